@@ -1,0 +1,247 @@
+"""From lattice to space and shear, and what is trimmed at the border."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT, edge_ends
+from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould
+
+OUTSIDE = 2
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def positions(mesh, net, i_first, out):
+    """World positions of the rows from i_first on, out (rows, n_weft, 3); NaN where there is no node."""
+    for a in range(out.shape[0]):
+        i = i_first + a
+        for j in range(out.shape[1]):
+            if net.status[i, j] > OFF_MOULD:
+                out[a, j, 0] = math.nan
+                out[a, j, 1] = math.nan
+                out[a, j, 2] = math.nan
+                continue
+            frame = mesh.frame[net.face[i, j]]
+            x = net.xy[i, j, 0]
+            y = net.xy[i, j, 1]
+            for k in range(3):
+                out[a, j, k] = frame[k] + x * frame[3 + k] + y * frame[6 + k]
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
+    """Unit tangents (rows, n_weft, 3) at the nodes: the mean of the edges that arrive and leave along each fibre."""
+    n_warp, n_weft = net.status.shape
+    for a in range(warp_out.shape[0]):
+        i = i_first + a
+        for j in range(n_weft):
+            for k in range(3):
+                warp_out[a, j, k] = math.nan
+                weft_out[a, j, k] = math.nan
+            if net.status[i, j] > OFF_MOULD:
+                continue
+            frame = mesh.frame[net.face[i, j]]
+            for family in range(2):
+                dx = 0.0
+                dy = 0.0
+                if family == WARP:
+                    if i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD:
+                        px, py, _, _ = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
+                        dx += px
+                        dy += py
+                    if i > 0 and net.status[i - 1, j] <= OFF_MOULD:
+                        px, py, _, _ = edge_ends(mesh, net, start, WARP, i, j, -1, warp)
+                        dx -= px
+                        dy -= py
+                else:
+                    if j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD:
+                        px, py, _, _ = edge_ends(mesh, net, start, WEFT, i, j, 1, weft)
+                        dx += px
+                        dy += py
+                    if j > 0 and net.status[i, j - 1] <= OFF_MOULD:
+                        px, py, _, _ = edge_ends(mesh, net, start, WEFT, i, j, -1, weft)
+                        dx -= px
+                        dy -= py
+                size = math.sqrt(dx * dx + dy * dy)
+                if size > 0.0:
+                    for k in range(3):
+                        v = (dx * frame[3 + k] + dy * frame[6 + k]) / size
+                        if family == WARP:
+                            warp_out[a, j, k] = v
+                        else:
+                            weft_out[a, j, k] = v
+
+
+@njit(cache=True, error_model="numpy")
+def border_status(mesh, face, xy, slack, out):
+    """Status of places (n,), (n, 2): 0 on the mould, 1 on its extension."""
+    for n in range(len(face)):
+        out[n] = OFF_MOULD if off_mould(mesh, face[n], xy[n, 0], xy[n, 1], slack) else 0
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _angle(px, py, qx, qy):
+    return math.atan2(px * qy - py * qx, px * qx + py * qy)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
+    """Signed shear of the cells (i, j)-(i + 1, j + 1) of the rows from i_first on, out (rows, n_weft - 1), rad.
+
+    Initial angle less the mean over the four corners of the angle from +warp to +weft, measured in the surface: the
+    corners at (i, j) and (i + 1, j + 1) as they are, the other two as supplements. NaN where a corner is missing.
+    """
+    n_weft = net.status.shape[1]
+    i0 = start.index[0]
+    j0 = start.index[1]
+    # weft edges of the row below, both ends
+    below = np.empty((n_weft, 4))
+    above = np.empty((n_weft, 4))
+    above_row = -1
+    for a in range(out.shape[0]):
+        i = i_first + a
+        reuse = above_row == i
+        if reuse:
+            below, above = above, below
+        above_row = i + 1
+        for j in range(n_weft - 1):
+            f = net.face[i, j]
+            placed = net.status[i, j] <= OFF_MOULD and net.status[i, j + 1] <= OFF_MOULD
+            placed_above = net.status[i + 1, j] <= OFF_MOULD and net.status[i + 1, j + 1] <= OFF_MOULD
+            if not (placed and placed_above):
+                out[a, j] = math.nan
+                if placed_above:
+                    px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i + 1, j, 1, weft)
+                    above[j, 0] = px
+                    above[j, 1] = py
+                    above[j, 2] = qx
+                    above[j, 3] = qy
+                continue
+            g = net.face[i + 1, j]
+            one_face = f == g and f == net.face[i, j + 1] and f == net.face[i + 1, j + 1]
+            if one_face:
+                px = net.xy[i + 1, j, 0] - net.xy[i, j, 0]
+                py = net.xy[i + 1, j, 1] - net.xy[i, j, 1]
+                qx = net.xy[i, j + 1, 0] - net.xy[i, j, 0]
+                qy = net.xy[i, j + 1, 1] - net.xy[i, j, 1]
+                out[a, j] = initial_angle - _angle(px, py, qx, qy)
+                size = 1.0 / weft
+                px = (net.xy[i + 1, j + 1, 0] - net.xy[i + 1, j, 0]) * size
+                py = (net.xy[i + 1, j + 1, 1] - net.xy[i + 1, j, 1]) * size
+                above[j, 0] = px
+                above[j, 1] = py
+                above[j, 2] = px
+                above[j, 3] = py
+                continue
+            if not reuse:
+                px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i, j, 1, weft)
+                below[j, 0] = px
+                below[j, 1] = py
+                below[j, 2] = qx
+                below[j, 3] = qy
+            px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i + 1, j, 1, weft)
+            above[j, 0] = px
+            above[j, 1] = py
+            above[j, 2] = qx
+            above[j, 3] = qy
+            ax, ay, bx, by = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
+            cx, cy, dx, dy = edge_ends(mesh, net, start, WARP, i, j + 1, 1, warp)
+            total = _angle(ax, ay, below[j, 0], below[j, 1])
+            total += _angle(dx, dy, above[j, 2], above[j, 3])
+            total += _angle(bx, by, above[j, 0], above[j, 1])
+            total += _angle(cx, cy, below[j, 2], below[j, 3])
+            # the seed's own corner is its share of the star's angle, whatever the frames say
+            if (i == i0 or i + 1 == i0) and (j == j0 or j + 1 == j0):
+                if i == i0 and j == j0:
+                    total += start.sector[0] - _angle(ax, ay, below[j, 0], below[j, 1])
+                elif j == j0:
+                    total += math.pi - start.sector[1] - _angle(bx, by, above[j, 0], above[j, 1])
+                elif i == i0:
+                    total += math.pi - start.sector[3] - _angle(cx, cy, below[j, 2], below[j, 3])
+                else:
+                    total += start.sector[2] - _angle(dx, dy, above[j, 2], above[j, 3])
+            out[a, j] = initial_angle - 0.25 * total
+
+
+@njit(cache=True, error_model="numpy")
+def _crosses_mould(mesh, face, x, y, dx, dy, length):
+    """Whether the straight path from (x, y) touches a face of the mould."""
+    entered = -1
+    for _ in range(MAX_CROSSINGS):
+        if mesh.rim[face] < 0:
+            return True
+        exit_at = math.inf
+        exit_edge = -1
+        for k in range(3):
+            if k == entered:
+                continue
+            rate = mesh.line[face, 3 * k] * dx + mesh.line[face, 3 * k + 1] * dy
+            if rate < 0.0:
+                at = -(mesh.line[face, 3 * k] * x + mesh.line[face, 3 * k + 1] * y - mesh.line[face, 3 * k + 2]) / rate
+                if at < exit_at:
+                    exit_at = at
+                    exit_edge = k
+        if length <= exit_at:
+            return False
+        code = mesh.neighbour[face, exit_edge]
+        if code < 0:
+            return False
+        c = mesh.crossing[face, 4 * exit_edge]
+        s = mesh.crossing[face, 4 * exit_edge + 1]
+        tx = mesh.crossing[face, 4 * exit_edge + 2]
+        ty = mesh.crossing[face, 4 * exit_edge + 3]
+        x, y = c * x - s * y + tx, s * x + c * y + ty
+        dx, dy = c * dx - s * dy, s * dx + c * dy
+        face = code // 3
+        entered = code % 3
+    return False
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def touching_cells(mesh, net, start, i_first, warp, weft, out):
+    """Whether each whole cell touches the mould, by a corner or an edge across it: rows from i_first, out (rows, n_weft - 1)."""
+    n_weft = net.status.shape[1]
+    for a in range(out.shape[0]):
+        i = i_first + a
+        for j in range(n_weft - 1):
+            low = 255
+            high = 0
+            for s in (net.status[i, j], net.status[i + 1, j], net.status[i, j + 1], net.status[i + 1, j + 1]):
+                low = min(low, s)
+                high = max(high, s)
+            out[a, j] = False
+            if high > OFF_MOULD:
+                continue
+            if low == 0:
+                out[a, j] = True
+                continue
+            for step in range(4):
+                if step < 2:
+                    k = j + step
+                    dx, dy, _, _ = edge_ends(mesh, net, start, WARP, i, k, 1, warp)
+                    hit = _crosses_mould(mesh, net.face[i, k], net.xy[i, k, 0], net.xy[i, k, 1], dx, dy, warp)
+                else:
+                    k = i + step - 2
+                    dx, dy, _, _ = edge_ends(mesh, net, start, WEFT, k, j, 1, weft)
+                    hit = _crosses_mould(mesh, net.face[k, j], net.xy[k, j, 0], net.xy[k, j, 1], dx, dy, weft)
+                if hit:
+                    out[a, j] = True
+                    break
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def trim(net, touching):
+    """Take back the nodes off the mould at which no cell touches it: they become OUTSIDE."""
+    n_warp, n_weft = net.status.shape
+    for i in range(n_warp):
+        for j in range(n_weft):
+            if net.status[i, j] != OFF_MOULD:
+                continue
+            kept = False
+            for a in range(max(i - 1, 0), min(i + 1, n_warp - 1)):
+                for b in range(max(j - 1, 0), min(j + 1, n_weft - 1)):
+                    if touching[a, b]:
+                        kept = True
+            if not kept:
+                net.status[i, j] = OUTSIDE

@@ -1,0 +1,140 @@
+"""The fourth node of a cell: where two straightest paths of one spacing meet."""
+
+import math
+
+from numba import njit
+
+from meshdrape.kernels.walk import WALKED, turn_into, walk
+
+PLACED = 0
+OUTSIDE = 2
+FOLDED = 3
+NOT_CONVERGED = 7
+
+MAX_ITERATIONS = 40
+# From here on steps are halved: a path that jumps from one side of a vertex to the other and back is caught between.
+DAMPED_FROM = 12
+# Warp and weft closer than one degree to parallel are taken as folded.
+FOLD_COSINE = math.cos(math.radians(1.0))
+
+
+@njit(cache=True, error_model="numpy")
+def place(mesh, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance):
+    """Point at geodesic distance wa from A and wb from B, near the ends of the two given paths.
+
+    Both paths are walked and brought into one plane, where the ends of all paths that cross the same triangles lie
+    on two circles about the unfolded starts. The circles' intersection turns both start directions, and the paths
+    are walked again: where no vertex is passed that closes the gap at once. Of the two intersections the one on
+    which A's path meets B's counter-clockwise is taken if `side` is 1, clockwise if -1: the sense of the quadrant,
+    so that round-off never chooses.
+
+    Returns
+    -------
+    (code, face, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations)
+        Node; directions at A and at B; directions in which the two paths arrive, in the frame of the node's face.
+    """
+    iterations = 0
+    code, f1, ax, ay, px, py = walk(mesh, fa, xa, ya, ux, uy, wa)
+    if code != WALKED:
+        return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, px, py, iterations
+    while True:
+        code, f2, bx, by, qx, qy = walk(mesh, fb, xb, yb, vx, vy, wb)
+        if code != WALKED:
+            return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
+        x1 = ax + wa * px
+        y1 = ay + wa * py
+        if f1 != f2:
+            shared = False
+            for k in range(3):
+                other = mesh.neighbour[f2, k]
+                if other >= 0 and other // 3 == f1:
+                    c = mesh.crossing[f2, 4 * k]
+                    s = mesh.crossing[f2, 4 * k + 1]
+                    bx, by = c * bx - s * by + mesh.crossing[f2, 4 * k + 2], s * bx + c * by + mesh.crossing[f2, 4 * k + 3]
+                    qx, qy = c * qx - s * qy, s * qx + c * qy
+                    shared = True
+                    break
+        else:
+            shared = True
+        if shared:
+            x2 = bx + wb * qx
+            y2 = by + wb * qy
+            gap2 = (x2 - x1) ** 2 + (y2 - y1) ** 2
+        else:
+            gap2, turn_a, turn_b = _gap_in_space(mesh, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb)
+        if gap2 <= tolerance * tolerance:
+            if not shared:
+                qx, qy = turn_into(mesh, f2, qx, qy, f1)
+            if abs(px * qx + py * qy) > FOLD_COSINE or (px * qy - py * qx) * side < 0.0:
+                return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+            return PLACED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+        if iterations == MAX_ITERATIONS:
+            return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+        iterations += 1
+        if shared:
+            # circles about A's and B's images
+            ex = bx - ax
+            ey = by - ay
+            d2 = ex * ex + ey * ey
+            along = 0.5 * (1.0 + (wa * wa - wb * wb) / d2)
+            height2 = wa * wa / d2 - along * along
+            if not height2 > 0.0:
+                return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+            height = side * math.sqrt(height2)
+            cx = ax + along * ex - height * ey
+            cy = ay + along * ey + height * ex
+            # turn = new direction / old one, as complex numbers
+            nx = (cx - ax) / wa
+            ny = (cy - ay) / wa
+            ca = nx * px + ny * py
+            sa = ny * px - nx * py
+            nx = (cx - bx) / wb
+            ny = (cy - by) / wb
+            cb = nx * qx + ny * qy
+            sb = ny * qx - nx * qy
+        else:
+            ca = 1.0
+            sa = turn_a
+            cb = 1.0
+            sb = turn_b
+        if iterations > DAMPED_FROM:
+            ca += 1.0
+            cb += 1.0
+        size = math.sqrt(ca * ca + sa * sa)
+        ca /= size
+        sa /= size
+        size = math.sqrt(cb * cb + sb * sb)
+        cb /= size
+        sb /= size
+        ux, uy = ca * ux - sa * uy, sa * ux + ca * uy
+        vx, vy = cb * vx - sb * vy, sb * vx + cb * vy
+        code, f1, ax, ay, px, py = walk(mesh, fa, xa, ya, ux, uy, wa)
+        if code != WALKED:
+            return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
+
+
+@njit(cache=True, error_model="numpy")
+def _gap_in_space(mesh, f1, x1, y1, px, py, w1, f2, x2, y2, qx, qy, w2):
+    """Squared gap between two ends on faces that share no edge, and the two small turns that close it."""
+    a = mesh.frame[f1]
+    b = mesh.frame[f2]
+    gap2 = 0.0
+    m11 = 0.0
+    m12 = 0.0
+    m22 = 0.0
+    r1 = 0.0
+    r2 = 0.0
+    for k in range(3):
+        g = b[k] + x2 * b[3 + k] + y2 * b[6 + k] - a[k] - x1 * a[3 + k] - y1 * a[6 + k]
+        n1 = w1 * (-py * a[3 + k] + px * a[6 + k])
+        n2 = -w2 * (-qy * b[3 + k] + qx * b[6 + k])
+        gap2 += g * g
+        m11 += n1 * n1
+        m12 += n1 * n2
+        m22 += n2 * n2
+        r1 += n1 * g
+        r2 += n2 * g
+    determinant = m11 * m22 - m12 * m12
+    if determinant <= 1e-12 * m11 * m22:
+        return gap2, 0.0, 0.0
+    return gap2, (m22 * r1 - m12 * r2) / determinant, (m11 * r2 - m12 * r1) / determinant

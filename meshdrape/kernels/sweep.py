@@ -1,0 +1,319 @@
+"""Nodes of a net, cell after cell, in any of the four senses of the lattice."""
+
+import math
+
+from numba import njit
+
+from meshdrape.kernels.place import NOT_CONVERGED, OUTSIDE, PLACED, place
+from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
+
+OFF_MOULD = 1
+NOT_REACHED = 8
+
+WARP = 0
+WEFT = 1
+
+
+@njit(cache=True, error_model="numpy")
+def edge_ends(mesh, net, start, family, i, j, step, length):
+    """Direction of the edge from (i, j) to its neighbour `step` (+1 or -1) on, at both ends, each in its node's frame.
+
+    Returns (dx, dy, ex, ey): leaving (i, j), arriving at the neighbour. Only the seed's side is kept of an edge,
+    so the other end is walked to, unless one face holds both.
+    """
+    i0 = start.index[0]
+    j0 = start.index[1]
+    if family == WARP:
+        i2 = i + step
+        j2 = j
+        outward = (i2 > i0) == (step > 0) and (i2 - i0) != 0
+        lower_i = min(i, i2)
+        ox = net.warp_out[lower_i, j, 0]
+        oy = net.warp_out[lower_i, j, 1]
+    else:
+        i2 = i
+        j2 = j + step
+        outward = (j2 > j0) == (step > 0) and (j2 - j0) != 0
+        lower_j = min(j, j2)
+        ox = net.weft_out[i, lower_j, 0]
+        oy = net.weft_out[i, lower_j, 1]
+    if outward:
+        ti = i
+        tj = j
+        hi = i2
+        hj = j2
+    else:
+        ti = i2
+        tj = j2
+        hi = i
+        hj = j
+    tail_face = net.face[ti, tj]
+    head_face = net.face[hi, hj]
+    sx = ox
+    sy = oy
+    if family == WARP and j == j0:
+        # on a generator, which a vertex may have turned on its way
+        half = 0 if hi > ti else 2
+        ex = start.arrival[half, abs(hi - i0) - 1, 0]
+        ey = start.arrival[half, abs(hi - i0) - 1, 1]
+    elif family == WEFT and i == i0:
+        half = 1 if hj > tj else 3
+        ex = start.arrival[half, abs(hj - j0) - 1, 0]
+        ey = start.arrival[half, abs(hj - j0) - 1, 1]
+    elif tail_face == head_face:
+        ex = ox
+        ey = oy
+    else:
+        _, face, _, _, ex, ey = walk(mesh, tail_face, net.xy[ti, tj, 0], net.xy[ti, tj, 1], ox, oy, length)
+        ex, ey = turn_into(mesh, face, ex, ey, head_face)
+    if outward:
+        return sx, sy, ex, ey
+    return -ex, -ey, -sx, -sy
+
+
+@njit(cache=True, error_model="numpy")
+def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
+    """Keep the edge from (i, j) to its neighbour: (dx, dy) leaves (i, j), (ex, ey) arrives at the neighbour."""
+    if family == WARP:
+        i2 = i + step
+        k = min(i, i2)
+        if (i2 > start.index[0]) == (step > 0) and i2 != start.index[0]:
+            net.warp_out[k, j, 0] = dx
+            net.warp_out[k, j, 1] = dy
+        else:
+            net.warp_out[k, j, 0] = -ex
+            net.warp_out[k, j, 1] = -ey
+    else:
+        j2 = j + step
+        k = min(j, j2)
+        if (j2 > start.index[1]) == (step > 0) and j2 != start.index[1]:
+            net.weft_out[i, k, 0] = dx
+            net.weft_out[i, k, 1] = dy
+        else:
+            net.weft_out[i, k, 0] = -ex
+            net.weft_out[i, k, 1] = -ey
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, report):
+    """Place the nodes (i_first + si a, j_first + sj b) of one tile, 0 <= a < i_count, 0 <= b < j_count.
+
+    A node has two parents, A one step back along the warp and B one step back along the weft, and the node D that
+    closes their cell. Nodes that have a place keep it. Each place depends on parents alone, so tiles may run in any
+    order, on any thread, that places parents first.
+
+    The sheet beyond the mould hangs free: where one parent was lost off the mould and the other lies on the mould,
+    the fibre goes straight on, as a fibre does that nothing crosses.
+
+    Parameters
+    ----------
+    si, sj : int
+        Sense of the sweep, +1 or -1; parents at i_first - si and j_first - sj must be valid indices.
+    warp, weft : float
+        Spacing, mm.
+    tolerance : float
+        Largest gap between the ends of a node's two edges, mm.
+    slack : float
+        A node this near to the border counts as on the mould, mm.
+    report : (4,) int64
+        Gets: nodes placed, iterations, and the (i, j) of a node that did not converge.
+
+    Returns
+    -------
+    bool
+        True if the tile is done; False if it stopped at report[2:], marked NOT_CONVERGED, and must be called again
+        once that node is settled.
+    """
+    face = net.face
+    xy = net.xy
+    status = net.status
+    i0 = start.index[0]
+    j0 = start.index[1]
+    tolerance2 = tolerance * tolerance
+    side = float(si * sj)
+    line = mesh.line
+    for a in range(i_count):
+        i = i_first + si * a
+        ia = i - si
+        warp_at = min(i, ia)
+        warp_sign = 1.0 if (i - i0) * si > 0 else -1.0
+        # direction in which the warp edge D-B arrives at B; unknown at the start of a row
+        known = False
+        rx = 0.0
+        ry = 0.0
+        for b in range(j_count):
+            j = j_first + sj * b
+            jb = j - sj
+            if status[i, j] != NOT_REACHED:
+                known = False
+                continue
+            has_a = status[ia, j] <= OFF_MOULD
+            has_b = status[i, jb] <= OFF_MOULD
+            has_d = status[ia, jb] <= OFF_MOULD
+            if not (has_a and has_b and has_d):
+                known = False
+                status[i, j] = _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report)
+                continue
+            fd = face[ia, jb]
+            fa = face[ia, j]
+            fb = face[i, jb]
+            xa = xy[ia, j, 0]
+            ya = xy[ia, j, 1]
+            xb = xy[i, jb, 0]
+            yb = xy[i, jb, 1]
+            at_seed = ia == i0 and jb == j0
+            if fa == fb and fa == fd and not at_seed:
+                # the planar fourth corner of the rhombus, if this triangle holds it
+                ux = (xb - xy[ia, jb, 0]) / warp
+                uy = (yb - xy[ia, jb, 1]) / warp
+                vx = (xa - xy[ia, jb, 0]) / weft
+                vy = (ya - xy[ia, jb, 1]) / weft
+                # edges keep their exact length: renew the unit vectors by one Newton step of 1/sqrt
+                scale = 1.5 - 0.5 * (ux * ux + uy * uy)
+                ux *= scale
+                uy *= scale
+                scale = 1.5 - 0.5 * (vx * vx + vy * vy)
+                vx *= scale
+                vy *= scale
+                x = xa + warp * ux
+                y = ya + warp * uy
+                gx = xb + weft * vx - x
+                gy = yb + weft * vy - y
+                if (
+                    gx * gx + gy * gy <= tolerance2
+                    and line[fa, 0] * x + line[fa, 1] * y >= line[fa, 2]
+                    and line[fa, 3] * x + line[fa, 4] * y >= line[fa, 5]
+                    and line[fa, 6] * x + line[fa, 7] * y >= line[fa, 8]
+                ):
+                    face[i, j] = fa
+                    xy[i, j, 0] = x
+                    xy[i, j, 1] = y
+                    net.warp_out[warp_at, j, 0] = warp_sign * ux
+                    net.warp_out[warp_at, j, 1] = warp_sign * uy
+                    k = j if sj < 0 else jb
+                    outward = (j > j0) if sj > 0 else (j < j0)
+                    net.weft_out[i, k, 0] = vx if outward else -vx
+                    net.weft_out[i, k, 1] = vy if outward else -vy
+                    if mesh.rim[fa] < 0:
+                        status[i, j] = PLACED
+                    else:
+                        status[i, j] = OFF_MOULD if off_mould(mesh, fa, x, y, slack) else PLACED
+                    report[0] += 1
+                    known = True
+                    rx = ux
+                    ry = uy
+                    continue
+            # first guess: a rhombus of no curvature, D's edges carried along D-A and D-B
+            px, py, ex, ey = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
+            qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
+            if known:
+                ex = rx
+                ey = ry
+            if at_seed:
+                half = _half_fibre(si, sj)
+                # quadrants counter-clockwise; weft seen from warp is left of it where si and sj agree
+                c = math.cos(start.sector[half])
+                s = -side * math.sin(start.sector[half])
+            else:
+                # p / q as complex numbers: the turn from the weft edge to the warp edge at D
+                c = px * qx + py * qy
+                s = py * qx - px * qy
+            # unit to the last bit, or lengths would drift from cell to cell
+            size = math.sqrt((c * c + s * s) * (gx * gx + gy * gy))
+            gx /= size
+            gy /= size
+            size = math.sqrt((c * c + s * s) * (ex * ex + ey * ey))
+            ex /= size
+            ey /= size
+            ux = c * gx - s * gy
+            uy = s * gx + c * gy
+            vx = c * ex + s * ey
+            vy = c * ey - s * ex
+            code, f, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations = place(
+                mesh, fa, xa, ya, ux, uy, warp, fb, xb, yb, vx, vy, weft, side, tolerance
+            )
+            report[1] += iterations
+            if code == PLACED:
+                report[0] += 1
+                face[i, j] = f
+                xy[i, j, 0] = x
+                xy[i, j, 1] = y
+                keep_edge(net, start, WARP, ia, j, si, ux, uy, px, py)
+                keep_edge(net, start, WEFT, i, jb, sj, vx, vy, qx, qy)
+                status[i, j] = OFF_MOULD if off_mould(mesh, f, x, y, slack) else PLACED
+                known = True
+                rx = px
+                ry = py
+            else:
+                known = False
+                status[i, j] = code
+                if code == NOT_CONVERGED:
+                    report[2] = i
+                    report[3] = j
+                    return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _half_fibre(si, sj):
+    """Half-fibre that bounds a quadrant clockwise; they are numbered counter-clockwise from +warp."""
+    if sj > 0:
+        return 0 if si > 0 else 1
+    return 2 if si < 0 else 3
+
+
+@njit(cache=True, error_model="numpy")
+def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report):
+    """Status of a node that lacks a parent, placed straight on from the other one where the sheet hangs free."""
+    status = net.status
+    ia = i - si
+    jb = j - sj
+    side = float(si * sj)
+    half = _half_fibre(si, sj)
+    if has_a and status[ia, j] == PLACED and status[i, jb] == OUTSIDE:
+        if ia != start.index[0]:
+            if status[ia - si, j] <= OFF_MOULD:
+                _, _, dx, dy = edge_ends(mesh, net, start, WARP, ia - si, j, si, warp)
+                return _step(mesh, net, start, WARP, ia, j, si, i, j, dx, dy, warp, slack, report)
+        elif status[ia, jb] <= OFF_MOULD:
+            # from the weft generator itself: at the initial angle
+            _, _, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
+            c = math.cos(start.sector[half])
+            s = -side * math.sin(start.sector[half])
+            return _step(
+                mesh, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report
+            )
+    if has_b and status[i, jb] == PLACED and status[ia, j] == OUTSIDE:
+        if jb != start.index[1]:
+            if status[i, jb - sj] <= OFF_MOULD:
+                _, _, dx, dy = edge_ends(mesh, net, start, WEFT, i, jb - sj, sj, weft)
+                return _step(mesh, net, start, WEFT, i, jb, sj, i, j, dx, dy, weft, slack, report)
+        elif status[ia, jb] <= OFF_MOULD:
+            _, _, gx, gy = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
+            c = math.cos(start.sector[half])
+            s = side * math.sin(start.sector[half])
+            return _step(
+                mesh, net, start, WEFT, i, jb, sj, i, j, c * gx - s * gy, s * gx + c * gy, weft, slack, report
+            )
+    if (has_a or status[ia, j] == OUTSIDE) and (has_b or status[i, jb] == OUTSIDE):
+        return OUTSIDE
+    return NOT_REACHED
+
+
+@njit(cache=True, error_model="numpy")
+def _step(mesh, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, report):
+    """Place (i2, j2) one edge straight on from (i, j); its status."""
+    size = math.sqrt(dx * dx + dy * dy)
+    dx /= size
+    dy /= size
+    code, f, x, y, ex, ey = walk(mesh, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length)
+    if code != WALKED:
+        return OUTSIDE
+    report[0] += 1
+    x += length * ex
+    y += length * ey
+    net.face[i2, j2] = f
+    net.xy[i2, j2, 0] = x
+    net.xy[i2, j2, 1] = y
+    keep_edge(net, start, family, i, j, step, dx, dy, ex, ey)
+    return OFF_MOULD if off_mould(mesh, f, x, y, slack) else PLACED

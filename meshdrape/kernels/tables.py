@@ -1,0 +1,74 @@
+"""The arrays a kernel walks on, and the arrays it writes a net into."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class Unfolding(NamedTuple):
+    """A triangle mesh as planes that can be unfolded one into the next.
+
+    Each face carries a frame of its own: corner 0 is the origin, corner 1 lies on the positive x axis,
+    corner 2 has y > 0. Edge k runs from corner k to corner k + 1 (mod 3).
+
+    Invariants (kept by :class:`meshdrape.surface.Surface`): manifold, consistently oriented, no zero area.
+    """
+
+    line: FloatArray
+    """(m, 9) three edges as (nx, ny, o): unit inward normal and offset; nx x + ny y - o is the height above it."""
+    crossing: FloatArray
+    """(m, 12) per edge (c, s, tx, ty): (x, y) of this face is (c x - s y + tx, s x + c y + ty) over the edge."""
+    neighbour: NDArray[np.int32]
+    """(m, 3) 3 g + l: edge l of face g lies on the other side; -1 at a border."""
+    corner: FloatArray
+    """(m, 3) x of corner 1; x and y of corner 2."""
+    frame: FloatArray
+    """(m, 9) corner 0, x axis, y axis in space."""
+    vertex: NDArray[np.int32]
+    """(m, 3) corners of each face."""
+    vertex_angle: FloatArray
+    """(n,) sum of the face angles at each vertex, rad; 0 where the vertex lies on the border."""
+    rim: NDArray[np.int8]
+    """(m,) -1 on the mould; else bits of what the face shares with it: edges 0 to 2, then corners 0 to 2."""
+
+
+class Lattice(NamedTuple):
+    """The nodes of a net and the edges between them, as a sweep fills them.
+
+    A warp edge (i, j)-(i + 1, j) is kept at [i, j], a weft edge (i, j)-(i, j + 1) likewise. An edge is known by the
+    direction in which it leaves its tail, the end nearer to the seed, in the frame of the tail's face.
+    """
+
+    face: NDArray[np.int32]
+    """(n_warp, n_weft) face that holds the node."""
+    xy: FloatArray
+    """(n_warp, n_weft, 2) place in the frame of that face, mm."""
+    warp_out: FloatArray
+    """(n_warp, n_weft, 2) unit direction of each warp edge at its tail."""
+    weft_out: FloatArray
+    """(n_warp, n_weft, 2) unit direction of each weft edge at its tail."""
+    status: NDArray[np.uint8]
+    """(n_warp, n_weft) NodeStatus."""
+
+
+class Start(NamedTuple):
+    """Where the four half-fibres leave the seed: +warp, +weft, -warp, -weft.
+
+    A seed on an edge or a vertex belongs to several faces, so each half-fibre keeps its own.
+    """
+
+    index: NDArray[np.int64]
+    """(2,) lattice index of the seed."""
+    face: NDArray[np.int32]
+    """(4,) face each half-fibre enters."""
+    xy: FloatArray
+    """(4, 2) the seed in the frame of that face."""
+    out: FloatArray
+    """(4, 2) unit direction in that frame."""
+    sector: FloatArray
+    """(4,) angle from each half-fibre to the next, counter-clockwise, rad."""
+    arrival: FloatArray
+    """(4, n, 2) direction in which each half-fibre reaches its first, second ... node, in that node's frame."""

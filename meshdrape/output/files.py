@@ -1,0 +1,72 @@
+"""Files that are there whole or not at all."""
+
+import errno
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+from meshdrape.errors import FileError
+
+# what the disk, rather than the data, can have against a write
+_DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS}
+
+
+@contextmanager
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+    """Open a binary file that appears under its name when the block ends well, and never otherwise.
+
+    The bytes go to a hidden file beside the target, which is renamed at the end. Whatever ends the block
+    early, Ctrl-C too, removes it, and a file that stood at `path` before is left as it was.
+
+    Parameters
+    ----------
+    path : path-like
+        The target. A symbolic link is followed, so that the file it points to is replaced.
+
+    Raises
+    ------
+    FileError
+        The folder does not exist or cannot be written to, the target is a folder or a device, or the disk
+        is full.
+    """
+    target = Path(os.path.realpath(path))
+    _check_target(target, path)
+    partial = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    try:
+        file = partial.open("xb")
+    except OSError as error:
+        raise FileError(_refusal(path, target, error)) from None
+    try:
+        with file:
+            yield file
+        os.replace(partial, target)
+    except OSError as error:
+        if error.errno not in _DISK_ERRORS:
+            raise
+        msg = f"cannot write {path}: {error.strerror}; free some space or choose another folder"
+        raise FileError(msg) from None
+    finally:
+        with suppress(FileNotFoundError):  # renamed, when all went well
+            partial.unlink()
+
+
+def _check_target(target: Path, path: str | os.PathLike[str]) -> None:
+    if not target.parent.is_dir():
+        msg = f"cannot write {path}: the folder {target.parent} does not exist; create it or choose another"
+        raise FileError(msg)
+    if target.is_dir():
+        msg = f"cannot write {path}: it is a folder; give the name of a file in it"
+        raise FileError(msg)
+    if target.exists() and not target.is_file():
+        # renaming over a device such as /dev/null would replace the device
+        msg = f"cannot write {path}: it is not a regular file; give the name of a file"
+        raise FileError(msg)
+
+
+def _refusal(path: str | os.PathLike[str], target: Path, error: OSError) -> str:
+    if isinstance(error, PermissionError):
+        return f"cannot write {path}: the folder {target.parent} is not writable; choose another"
+    return f"cannot write {path}: {error.strerror}; choose another name or folder"

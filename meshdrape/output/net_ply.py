@@ -1,0 +1,303 @@
+"""NET.ply: the net with everything known at its nodes and cells, opened by MeshLab as it is.
+
+The file is written and read by blocks of rows: a net of millions of nodes needs no more memory for it than
+a small one.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshdrape.errors import NetError
+from meshdrape.output.columns import COLOUR, POSITION, SHEAR_FIELDS, fill, fill_shear
+from meshdrape.output.comments import from_comments, to_comments
+from meshdrape.output.ply import Element, Rows, ply_writer
+from meshdrape.output.ply_reader import PlyFile, read_ply
+from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.status import NodeStatus
+
+if TYPE_CHECKING:
+    from meshdrape.weave.measures import Measures
+    from meshdrape.weave.net import Net
+
+FloatArray = NDArray[np.float64]
+
+_WARP: Final = ("warp_x", "warp_y", "warp_z")
+_WEFT: Final = ("weft_x", "weft_y", "weft_z")
+
+NODE: Final = np.dtype(
+    [
+        *[(name, "f8") for name in POSITION],
+        ("i", "i4"),
+        ("j", "i4"),
+        *[(name, "u1") for name in COLOUR],
+        ("quality", "f4"),
+        ("s", "f4"),  # MeshLab takes texture coordinates as float alone
+        ("t", "f4"),
+        ("shear_deg", "f8"),
+        *[(name, "f8") for name in _WARP + _WEFT],
+        ("status", "u1"),
+    ]
+)
+CELL: Final = np.dtype([("vertex_indices", "i4", (4,)), *SHEAR_FIELDS])
+GAP: Final = np.dtype([("i", "i4"), ("j", "i4"), ("length", "i4"), ("status", "u1")])
+_NODES_PER_BLOCK: Final = 1 << 16  # some 7 MB of rows
+
+
+@dataclass(frozen=True, eq=False)
+class StoredNet:
+    """A net read from its file; the names and shapes of the arrays are those of a draped :class:`Net`.
+
+    Attributes
+    ----------
+    fabric : Fabric
+    seed : (3,) float64, mm, on the mould
+    direction : (3,) float64
+        Unit warp direction at the seed.
+    seed_index : (int, int)
+        Indices of the seed node, along warp and along weft.
+    node_position : (n_warp, n_weft, 3) float64, mm
+        Bit for bit as written; NaN where there is no node.
+    node_status : (n_warp, n_weft) uint8, NodeStatus
+    warp_direction, weft_direction : (n_warp, n_weft, 3) float64
+        Unit tangents, NaN where there is no node.
+    cell_shear : (n_warp - 1, n_weft - 1) float64, rad
+        Signed; NaN where a corner is missing. The file holds degrees, so the last bit may differ.
+    mould_file : Path or None
+        The mould's file, found from where the net's file lies now.
+    mould_sha256 : str or None
+    mould_unit : str
+        The unit the mould's file was read in.
+    mould_faces : tuple of int
+        Ids of the CAD faces chosen; empty for a mesh.
+    chord_tolerance, angle_tolerance : float or None
+        mm and rad, of the tessellation.
+    version : str
+        Of the meshdrape that wrote the file.
+    """
+
+    fabric: Fabric
+    seed: FloatArray
+    direction: FloatArray
+    seed_index: tuple[int, int]
+    node_position: FloatArray
+    node_status: NDArray[np.uint8]
+    warp_direction: FloatArray
+    weft_direction: FloatArray
+    cell_shear: FloatArray
+    mould_file: Path | None
+    mould_sha256: str | None
+    mould_unit: str
+    mould_faces: tuple[int, ...]
+    chord_tolerance: float | None
+    angle_tolerance: float | None
+    version: str
+
+
+def write_ply(net: Net, path: str | os.PathLike[str], measures: Measures | None = None) -> None:
+    """Write a net as binary little-endian PLY.
+
+    Vertices are the nodes that have a position, in rows along the weft: `x y z` (mm), `i j`, colour,
+    `quality` (absolute shear, deg; 0 where there is no whole cell), `s t` (mm of cloth from the seed along
+    warp and weft), `shear_deg` (signed), `warp_x ... weft_z`, `status`. Faces are the cells, counter-clockwise
+    about the mould's normal, with colour, `quality` and `shear_deg`. A third element, `gap`, holds the
+    statuses of the nodes without position as runs. The comments say how the net was made.
+
+    Parameters
+    ----------
+    net : Net
+    path : path-like
+    measures : Measures, optional
+        Of this net, if they are at hand; else they are taken here.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written.
+    """
+    if measures is None:
+        from meshdrape.weave.measures import measure
+
+        measures = measure(net)
+    status = net.node_status
+    has_position = status <= NodeStatus.OFF_MOULD
+    gaps = _gaps(status, has_position)
+    cells = Element("face", _n_cells(has_position), CELL)
+    nodes = Element("vertex", int(has_position.sum()), NODE)
+    elements = [nodes, cells, Element("gap", len(gaps), GAP)]
+    with ply_writer(path, elements, to_comments(_provenance(net, path))) as ply:
+        for start, end in _blocks(*status.shape):
+            ply.write("vertex", _node_rows(nodes, net, measures, has_position[start:end], start))
+        first = 0  # vertex of the first node in the block
+        for start, end in _blocks(status.shape[0] - 1, status.shape[1]):
+            ply.write("face", _cell_rows(cells, net, measures, has_position[start : end + 1], start, first))
+            first += int(has_position[start:end].sum())
+        ply.write("gap", gaps)
+
+
+def read_net(path: str | os.PathLike[str]) -> StoredNet:
+    """Return the net in a PLY file that `write_ply` made.
+
+    Raises
+    ------
+    FileError
+        The file is missing, truncated or not a PLY.
+    NetError
+        It is a PLY, but not of a net.
+    """
+    ply = read_ply(path)
+    try:
+        return _stored_net(Path(path), ply)
+    except (KeyError, ValueError, IndexError, TypeError) as error:
+        msg = f"{path} is not a net that meshdrape wrote ({_reason(error)}); give the NET.ply of a drape"
+        raise NetError(msg) from None
+
+
+def _reason(error: Exception) -> str:
+    return f"it has no {error.args[0]}" if isinstance(error, KeyError) else str(error)
+
+
+def _blocks(n_rows: int, row_length: int) -> Iterator[tuple[int, int]]:
+    """Yield spans of rows of the net, each of a size that stays in the processor's cache."""
+    step = max(1, _NODES_PER_BLOCK // row_length)
+    for start in range(0, n_rows, step):
+        yield start, min(start + step, n_rows)
+
+
+def _n_cells(has_position: NDArray[np.bool_]) -> int:
+    """Count the cells have all four corners."""
+    return sum(
+        int(_whole(has_position[start : end + 1]).sum())
+        for start, end in _blocks(has_position.shape[0] - 1, has_position.shape[1])
+    )
+
+
+def _whole(has_position: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell whether each cell has all four corners, shape one less than of the nodes."""
+    along_warp = has_position[:-1] & has_position[1:]
+    return along_warp[:, :-1] & along_warp[:, 1:]
+
+
+def _node_rows(
+    element: Element, net: Net, measures: Measures, has_position: NDArray[np.bool_], start: int
+) -> Rows:
+    end = start + len(has_position)
+    i, j = np.nonzero(has_position)
+    rows = element.rows(len(i))
+    fill(rows, POSITION, net.positions(start, end)[has_position])
+    warp, weft = net.directions(start, end)
+    fill(rows, _WARP, warp[has_position])
+    fill(rows, _WEFT, weft[has_position])
+    rows["i"] = i + start
+    rows["j"] = j
+    rows["s"] = (rows["i"] - net.seed_index[0]) * net.fabric.warp_spacing
+    rows["t"] = (rows["j"] - net.seed_index[1]) * net.fabric.weft_spacing
+    rows["status"] = net.node_status[start:end][has_position]
+    fill_shear(rows, measures.node_shear[start:end][has_position], net.fabric.locking_angle)
+    return rows
+
+
+def _cell_rows(
+    element: Element, net: Net, measures: Measures, has_position: NDArray[np.bool_], start: int, first: int
+) -> Rows:
+    whole = _whole(has_position)
+    vertex = (first - 1 + np.cumsum(has_position, dtype=np.int32)).reshape(has_position.shape)
+    rows = element.rows(int(whole.sum()))
+    corners = (vertex[:-1, :-1], vertex[1:, :-1], vertex[1:, 1:], vertex[:-1, 1:])
+    for k, corner in enumerate(corners):
+        rows["vertex_indices"][:, k] = corner[whole]
+    shear = measures.cell_shear[start : start + len(whole)][whole]
+    fill_shear(rows, shear, net.fabric.locking_angle)
+    return rows
+
+
+def _gaps(status: NDArray[np.uint8], has_position: NDArray[np.bool_]) -> Rows:
+    """Return the runs of one status among the nodes without position, along the weft and on into the next row."""
+    without = np.where(has_position, np.uint8(NodeStatus.PLACED), status).ravel()
+    start = np.flatnonzero(np.diff(without, prepend=np.uint8(NodeStatus.PLACED)))
+    length = np.diff(start, append=without.size)
+    kept = without[start] != NodeStatus.PLACED
+    rows = Element("gap", int(kept.sum()), GAP).rows(int(kept.sum()))
+    rows["i"], rows["j"] = np.divmod(start[kept], status.shape[1])
+    rows["length"] = length[kept]
+    rows["status"] = without[start[kept]]
+    return rows
+
+
+def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return how the net was made, for the comments of its file."""
+    mould, fabric = net.mould, net.fabric
+    source = None
+    if mould.source is not None:
+        # told from the net's file, so that the two can move together
+        source = Path(os.path.relpath(mould.source, Path(path).parent)).as_posix()
+    return {
+        "meshdrape": version("meshdrape"),
+        "unit": "mm",
+        "spacing": [fabric.warp_spacing, fabric.weft_spacing],
+        "initial_angle_rad": fabric.initial_angle,
+        "locking_angle_rad": fabric.locking_angle,
+        "seed": np.asarray(net.seed).tolist(),
+        "direction": np.asarray(net.direction).tolist(),
+        "seed_index": [int(index) for index in net.seed_index],
+        "nodes": list(net.node_status.shape),
+        "mould_file": source,
+        "mould_sha256": mould.sha256,
+        "mould_unit": mould.unit,
+        "mould_faces": [face.id for face in mould.cad_faces],
+        "chord_tolerance": mould.chord_tolerance,
+        "angle_tolerance_rad": mould.angle_tolerance,
+    }
+
+
+def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
+    made = from_comments(ply.comments)
+    n_warp, n_weft = made["nodes"]
+    node, cell, gap = (ply.elements[name] for name in ("vertex", "face", "gap"))
+    status = np.full((n_warp, n_weft), NodeStatus.NOT_REACHED, dtype=np.uint8)
+    arrays = [np.full((n_warp, n_weft, 3), np.nan) for _ in range(3)]
+    for start in range(0, len(node), _NODES_PER_BLOCK):
+        rows = node[start : start + _NODES_PER_BLOCK]
+        at = rows["i"], rows["j"]
+        status[at] = rows["status"]
+        for array, names in zip(arrays, (POSITION, _WARP, _WEFT), strict=True):
+            for k, name in enumerate(names):
+                array[(*at, k)] = rows[name]
+    flat = status.ravel()
+    for i, j, length, value in gap[["i", "j", "length", "status"]].tolist():
+        flat[i * n_weft + j : i * n_weft + j + length] = value
+    n_gaps = int(gap["length"].sum())
+    if len(node) + n_gaps != status.size or int((status <= NodeStatus.OFF_MOULD).sum()) != len(node):
+        msg = f"its {len(node):,} nodes and {n_gaps:,} gaps do not fill {n_warp} x {n_weft}"
+        raise ValueError(msg)
+    shear = np.full((n_warp - 1, n_weft - 1), np.nan)
+    for start in range(0, len(cell), _NODES_PER_BLOCK):
+        rows = cell[start : start + _NODES_PER_BLOCK]
+        corner = node[rows["vertex_indices"][:, 0]]
+        shear[corner["i"], corner["j"]] = np.radians(rows["shear_deg"])
+    return StoredNet(
+        fabric=Fabric(tuple(made["spacing"]), made["initial_angle_rad"], made["locking_angle_rad"]),
+        seed=np.array(made["seed"], dtype=np.float64),
+        direction=np.array(made["direction"], dtype=np.float64),
+        seed_index=(int(made["seed_index"][0]), int(made["seed_index"][1])),
+        node_position=arrays[0],
+        node_status=status,
+        warp_direction=arrays[1],
+        weft_direction=arrays[2],
+        cell_shear=shear,
+        mould_file=None if made["mould_file"] is None else path.parent / made["mould_file"],
+        mould_sha256=made["mould_sha256"],
+        mould_unit=made["mould_unit"],
+        mould_faces=tuple(made["mould_faces"]),
+        chord_tolerance=made["chord_tolerance"],
+        angle_tolerance=made["angle_tolerance_rad"],
+        version=made["meshdrape"],
+    )

@@ -1,0 +1,308 @@
+"""The one surface everything runs on: an immutable, oriented, manifold triangle mesh with its unfolding tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshdrape.errors import MouldError
+from meshdrape.kernels.tables import Unfolding
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SurfacePoint:
+    """A place on a surface: a face and barycentric coordinates that sum to one.
+
+    Attributes
+    ----------
+    face : int
+    barycentric : (3,) float
+    """
+
+    face: int
+    barycentric: FloatArray
+
+    def position(self, surface: Surface) -> FloatArray:
+        """The point in space, shape (3,), mm."""
+        return np.asarray(self.barycentric @ surface.vertices[surface.faces[self.face]])
+
+    def in_frame(self, surface: Surface) -> tuple[float, float]:
+        """The point in the frame of its face (corner 0 the origin, corner 1 on the x axis), mm."""
+        x1, x2, y2 = surface.unfolding.corner[self.face]
+        _, b, c = self.barycentric
+        return float(b * x1 + c * x2), float(c * y2)
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles, each with the neighbour across each edge.
+
+    Build it with :meth:`from_arrays`, which checks the mesh. Edge k of a face runs from corner k to corner k + 1.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64, mm
+    faces : (m, 3) int64, counter-clockwise about the normal
+    face_neighbour : (m, 3) int64
+        3 g + l where edge l of face g lies on the other side; -1 at a border.
+    face_rim : (m,) int8
+        -1 on the mould; on an extension the edges and corners shared with it (see ``Unfolding.rim``).
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    face_neighbour: IntArray
+    face_rim: NDArray[np.int8]
+
+    @classmethod
+    def from_arrays(cls, vertices: ArrayLike, faces: ArrayLike, n_mould_faces: int | None = None) -> Surface:
+        """The surface of the given triangles.
+
+        Parameters
+        ----------
+        vertices : (n, 3) float, mm
+        faces : (m, 3) int
+        n_mould_faces : int, optional
+            Faces from here on are an extension of the mould, not the mould. Default: all are the mould.
+
+        Raises
+        ------
+        MouldError
+            If an edge has more than two triangles, or two triangles that run round it the same way.
+        """
+        vertices = np.array(vertices, dtype=np.float64)
+        faces = np.array(faces, dtype=np.int64)
+        neighbour = _neighbours(faces, len(vertices))
+        rim = _rim(faces, neighbour, len(faces) if n_mould_faces is None else n_mould_faces)
+        for array in (vertices, faces, neighbour, rim):
+            array.setflags(write=False)
+        return cls(vertices, faces, neighbour, rim)
+
+    @cached_property
+    def _corner_vectors(self) -> tuple[FloatArray, FloatArray]:
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return b - a, c - a
+
+    @cached_property
+    def face_normal(self) -> FloatArray:
+        """Unit normals, (m, 3)."""
+        u, v = self._corner_vectors
+        normal = np.cross(u, v)
+        return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
+
+    @cached_property
+    def face_area(self) -> FloatArray:
+        """Areas, (m,), mm2."""
+        u, v = self._corner_vectors
+        return np.asarray(0.5 * np.linalg.norm(np.cross(u, v), axis=1))
+
+    @cached_property
+    def corner_angle(self) -> FloatArray:
+        """Angle of each face at each of its corners, (m, 3), rad."""
+        angles = np.empty((len(self.faces), 3))
+        for k in range(3):
+            a, b, c = (self.vertices[self.faces[:, (k + s) % 3]] for s in range(3))
+            u, v = b - a, c - a
+            angles[:, k] = np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))
+        return angles
+
+    @cached_property
+    def vertex_angle(self) -> FloatArray:
+        """Sum of the face angles at each vertex, (n,), rad."""
+        return np.bincount(self.faces.ravel(), self.corner_angle.ravel(), minlength=len(self.vertices))
+
+    @cached_property
+    def border_vertex(self) -> NDArray[np.bool_]:
+        """Whether each vertex lies on a border, (n,)."""
+        on_border = np.zeros(len(self.vertices), dtype=bool)
+        face, k = np.nonzero(self.face_neighbour < 0)
+        on_border[self.faces[face, k]] = True
+        on_border[self.faces[face, (k + 1) % 3]] = True
+        return on_border
+
+    @cached_property
+    def vertex_defect(self) -> FloatArray:
+        """Angle defect of each vertex, (n,), rad: 2 pi less the face angles inside, pi less them on a border."""
+        return np.asarray(np.where(self.border_vertex, np.pi, 2 * np.pi) - self.vertex_angle)
+
+    @cached_property
+    def border_loops(self) -> list[IntArray]:
+        """Half-edges 3 f + k along each border, the mould on their left; longest loop first."""
+        face, k = np.nonzero(self.face_neighbour < 0)
+        half = 3 * face + k
+        following: dict[int, int] = {}
+        flat = self.face_neighbour.ravel()
+        for h in half.tolist():
+            # turn about the end vertex until the next border edge
+            g = 3 * (h // 3) + (h % 3 + 1) % 3
+            while flat[g] >= 0:
+                g = int(flat[g])
+                g = 3 * (g // 3) + (g % 3 + 1) % 3
+            following[h] = g
+        loops = []
+        left = set(half.tolist())
+        while left:
+            h = min(left)
+            loop = []
+            while h in left:
+                left.remove(h)
+                loop.append(h)
+                h = following[h]
+            loops.append(np.array(loop, dtype=np.int64))
+        loops.sort(key=lambda loop: -float(self.half_edge_length(loop).sum()))
+        return loops
+
+    def half_edge_length(self, half: IntArray) -> FloatArray:
+        """Lengths of the half-edges 3 f + k, mm."""
+        face, k = half // 3, half % 3
+        ends = self.vertices[self.faces[face, (k + 1) % 3]] - self.vertices[self.faces[face, k]]
+        return np.asarray(np.linalg.norm(ends, axis=-1))
+
+    @cached_property
+    def face_component(self) -> IntArray:
+        """Number of the connected part each face belongs to, (m,), parts in order of their first face."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        m = len(self.faces)
+        face, k = np.nonzero(self.face_neighbour >= 0)
+        other = self.face_neighbour[face, k] // 3
+        _, label = connected_components(coo_array((np.ones(len(face)), (face, other)), shape=(m, m)), directed=False)
+        _, first = np.unique(label, return_index=True)
+        rank = np.empty(len(first), dtype=np.int64)
+        rank[label[np.sort(first)]] = np.arange(len(first))
+        return rank[label]
+
+    @property
+    def n_components(self) -> int:
+        """Number of connected parts."""
+        return int(self.face_component.max()) + 1
+
+    def component(self, number: int) -> tuple[Surface, IntArray]:
+        """One connected part, and the face of this surface behind each of its faces."""
+        kept = np.flatnonzero(self.face_component == number)
+        used, compact = np.unique(self.faces[kept], return_inverse=True)
+        return Surface.from_arrays(self.vertices[used], compact.reshape(-1, 3)), kept
+
+    @cached_property
+    def unfolding(self) -> Unfolding:
+        """The tables the kernels walk on."""
+        return _unfold(self)
+
+    def closest_point(self, position: ArrayLike) -> tuple[SurfacePoint, float]:
+        """The point of the surface nearest to `position` (3,), and its distance, mm. O(n_faces)."""
+        p = np.asarray(position, dtype=np.float64)
+        weights = _closest_on_triangles(p, *(self.vertices[self.faces[:, k]] for k in range(3)))
+        found = np.einsum("mk,mkd->md", weights, self.vertices[self.faces])
+        distance = np.linalg.norm(found - p, axis=1)
+        face = int(np.argmin(distance))
+        return SurfacePoint(face, weights[face]), float(distance[face])
+
+
+def _neighbours(faces: IntArray, n_vertices: int) -> IntArray:
+    """3 g + l across each edge, (m, 3); -1 at a border."""
+    tail = faces.ravel()
+    head = faces[:, [1, 2, 0]].ravel()
+    key = tail * n_vertices + head
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    repeated = np.flatnonzero(ordered[1:] == ordered[:-1])
+    if len(repeated):
+        h = int(order[repeated[0]])
+        msg = (
+            f"{len(repeated)} edges are run through twice in the same sense, first the edge of vertices {tail[h]} and "
+            f"{head[h]}: the mesh is non-manifold or its triangles are not oriented alike; repair it with --heal"
+        )
+        raise MouldError(msg)
+    reverse = head * n_vertices + tail
+    at = np.minimum(np.searchsorted(ordered, reverse), len(ordered) - 1)
+    found = ordered[at] == reverse
+    return np.where(found, order[at], -1).reshape(-1, 3)
+
+
+def _rim(faces: IntArray, neighbour: IntArray, n_mould_faces: int) -> NDArray[np.int8]:
+    """What each face of an extension shares with the mould: bits 0 to 2 edges, 3 to 5 corners; -1 on the mould."""
+    rim = np.full(len(faces), -1, dtype=np.int8)
+    outer = faces[n_mould_faces:]
+    if len(outer):
+        on_mould = np.isin(outer, faces[:n_mould_faces])
+        across = neighbour[n_mould_faces:]
+        shared = (across >= 0) & (across < 3 * n_mould_faces)
+        rim[n_mould_faces:] = np.hstack([shared, on_mould]) @ (1 << np.arange(6))
+    return rim
+
+
+def _unfold(surface: Surface) -> Unfolding:
+    m = len(surface.faces)
+    u, v = surface._corner_vectors
+    x1 = np.linalg.norm(u, axis=1)
+    e1 = u / x1[:, None]
+    e2 = np.cross(surface.face_normal, e1)
+    corner = np.stack([x1, np.einsum("ij,ij->i", v, e1), np.einsum("ij,ij->i", v, e2)], axis=1)
+    place = np.zeros((m, 3, 2))
+    place[:, 1, 0] = corner[:, 0]
+    place[:, 2] = corner[:, 1:]
+    along = np.roll(place, -1, axis=1) - place
+    along /= np.linalg.norm(along, axis=2)[..., None]
+    line = np.empty((m, 3, 3))
+    line[..., 0] = -along[..., 1]
+    line[..., 1] = along[..., 0]
+    line[..., 2] = np.einsum("mkd,mkd->mk", line[..., :2], place)
+    neighbour = surface.face_neighbour
+    other = np.maximum(neighbour, 0)
+    g, l = other // 3, other % 3  # noqa: E741
+    # our edge runs against theirs: their direction there is the reverse of ours
+    there = -along[g, l]
+    c = np.einsum("mkd,mkd->mk", along, there)
+    s = along[..., 0] * there[..., 1] - along[..., 1] * there[..., 0]
+    # the middle of the edge is the same point on both sides
+    middle = 0.5 * (place + np.roll(place, -1, axis=1))
+    crossing = np.empty((m, 3, 4))
+    crossing[..., 0] = c
+    crossing[..., 1] = s
+    crossing[..., 2] = middle[g, l, 0] - (c * middle[..., 0] - s * middle[..., 1])
+    crossing[..., 3] = middle[g, l, 1] - (s * middle[..., 0] + c * middle[..., 1])
+    return Unfolding(
+        line=line.reshape(m, 9),
+        crossing=crossing.reshape(m, 12),
+        neighbour=neighbour.astype(np.int32),
+        corner=corner,
+        frame=np.concatenate([surface.vertices[surface.faces[:, 0]], e1, e2], axis=1),
+        vertex=surface.faces.astype(np.int32),
+        vertex_angle=np.where(surface.border_vertex, 0.0, surface.vertex_angle),
+        rim=np.array(surface.face_rim),
+    )
+
+
+def _closest_on_triangles(p: FloatArray, a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """Barycentric coordinates (m, 3) of the point of each triangle nearest to p.
+
+    The foot in the plane where it falls inside, else the nearest of the three edges' nearest points.
+    """
+    u, v = b - a, c - a
+    normal = np.cross(u, v)
+    double2 = np.einsum("ij,ij->i", normal, normal)
+    w = p - a
+    beta = np.einsum("ij,ij->i", np.cross(w, v), normal) / double2
+    gamma = np.einsum("ij,ij->i", np.cross(u, w), normal) / double2
+    best = np.stack([1 - beta - gamma, beta, gamma], axis=1)
+    outside = np.flatnonzero((best < 0).any(axis=1))
+    nearest = np.full(len(outside), np.inf)
+    for k, (s, e) in enumerate(((a, b), (b, c), (c, a))):
+        s, e = s[outside], e[outside]
+        along = e - s
+        t = np.clip(np.einsum("ij,ij->i", p - s, along) / np.einsum("ij,ij->i", along, along), 0, 1)
+        distance = np.linalg.norm(s + t[:, None] * along - p, axis=1)
+        nearer = np.flatnonzero(distance < nearest)
+        nearest[nearer] = distance[nearer]
+        rows = np.zeros((len(nearer), 3))
+        rows[:, k] = 1 - t[nearer]
+        rows[:, (k + 1) % 3] = t[nearer]
+        best[outside[nearer]] = rows
+    return best

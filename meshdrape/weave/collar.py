@@ -1,0 +1,158 @@
+"""The surface extended past its border, so that fabric that leaves the mould still has something to lie on.
+
+Each border triangle's plane goes on outward. At a border vertex neighbouring planes meet where they intersect, so that
+creases and rulings go on past the border and a developable mould stays developable; planes that are one and the same
+meet in a mitre; at a sharp convex corner they leave a gap that is filled flat. A hole is filled. Nodes out there hold the net together at the border and are
+trimmed afterwards.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshdrape.surface import Surface
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# A convex corner that turns more than this gets a fan of flat triangles, for a mitre would reach too far.
+FAN_FROM = np.radians(100.0)
+# Planes closer than this to parallel, rad, have no intersection that means anything.
+ONE_PLANE = 1e-6
+# Two planes meet along a ruling only if it leaves both borders at more than about 20 degrees.
+RULING_LEAVES = 0.35
+# An outer edge keeps at least this share of its border edge, else the extension of a hollow border would fold over.
+OUTER_EDGE_SHARE = 0.05
+
+
+def extended(surface: Surface, depth: float) -> Surface:
+    """The surface with a collar `depth` mm wide along its outer borders and its holes filled.
+
+    Faces and vertices of `surface` keep their numbers; those of the collar follow. A closed surface is returned as
+    it is. Along a hollow border the collar is narrowed where it would fold over itself.
+    """
+    vertices = [surface.vertices]
+    faces = [surface.faces]
+    count = len(surface.vertices)
+    for loop in surface.border_loops:
+        if is_hole(surface, loop):
+            new_vertices, new_faces = _fill(surface, loop, count)
+        else:
+            new_vertices, new_faces = _strip(surface, loop, depth, count)
+        vertices.append(new_vertices)
+        faces.append(new_faces)
+        count += len(new_vertices)
+    if len(faces) == 1:
+        return surface
+    return Surface.from_arrays(np.concatenate(vertices), np.concatenate(faces), n_mould_faces=len(surface.faces))
+
+
+def is_hole(surface: Surface, loop: IntArray) -> bool:
+    """Whether a border turns backwards as a whole: about -2 pi for a hole, 0 for a tube's end, 2 pi for an outline."""
+    tails = surface.faces[loop // 3, loop % 3]
+    return float(np.sum(np.pi - surface.vertex_angle[tails])) < -np.pi
+
+
+def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[FloatArray, IntArray]:
+    face, k = loop // 3, loop % 3
+    tail = surface.faces[face, k]
+    head = np.roll(tail, -1)
+    along = surface.vertices[head] - surface.vertices[tail]
+    length = np.linalg.norm(along, axis=1)
+    along /= length[:, None]
+    outward = np.cross(along, surface.face_normal[face])
+    before = np.roll(outward, 1, axis=0)
+    turn = np.pi - surface.vertex_angle[tail]
+    normal = surface.face_normal[face]
+    ruling = np.cross(np.roll(normal, 1, axis=0), normal)
+    angle = np.linalg.norm(ruling, axis=1)
+    ruling /= np.maximum(angle, ONE_PLANE)[:, None]
+    ruling *= np.where(np.einsum("ij,ij->i", ruling, before + outward) < 0, -1.0, 1.0)[:, None]
+    leaves = np.minimum(np.einsum("ij,ij->i", ruling, before), np.einsum("ij,ij->i", ruling, outward))
+    ruled = (angle > ONE_PLANE) & (leaves > RULING_LEAVES)
+    fan = (turn > FAN_FROM) & ~ruled
+
+    # one outer vertex a border vertex, as far out as both strips are deep
+    middle = before + outward
+    size = np.linalg.norm(middle, axis=1)
+    mitre = np.where((size > 0.5)[:, None], middle / np.maximum(size, 0.5)[:, None], outward)
+    mitre = np.where(ruled[:, None], ruling, mitre)
+    reach = depth / np.clip(np.where(ruled, leaves, size / 2), RULING_LEAVES, 1.0)
+    for _ in range(60):
+        start = np.where(fan[:, None], depth * outward, reach[:, None] * mitre)
+        end = np.roll(np.where(fan[:, None], depth * before, reach[:, None] * mitre), -1, axis=0)
+        outer = length + np.einsum("ij,ij->i", end - start, along)
+        folded = outer < OUTER_EDGE_SHARE * length
+        if not folded.any():
+            break
+        reach[folded | np.roll(folded, 1)] *= 0.8
+
+    new_vertices: list[FloatArray] = []
+    new_faces: list[tuple[int, int, int]] = []
+    leaving = np.empty(len(loop), dtype=np.int64)  # outer vertex of the strip that starts here
+    arriving = np.empty(len(loop), dtype=np.int64)  # of the strip that ends here
+    for i, vertex in enumerate(tail.tolist()):
+        at = surface.vertices[vertex]
+        n = first + len(new_vertices)
+        if not fan[i]:
+            new_vertices.append(at + reach[i] * mitre[i])
+            leaving[i] = arriving[i] = n
+            continue
+        spread = _fan(before[i], outward[i], along[i - 1], turn[i])
+        new_vertices.extend(at + depth * ray for ray in spread)
+        arriving[i], leaving[i] = n, n + len(spread) - 1
+        new_faces.extend((vertex, n + j, n + j + 1) for j in range(len(spread) - 1))
+    for a, b, outer_a, outer_b in zip(tail.tolist(), head.tolist(), leaving.tolist(), np.roll(arriving, -1).tolist(), strict=True):
+        new_faces.append((b, a, outer_a))
+        new_faces.append((b, outer_a, outer_b))
+    return np.array(new_vertices), np.array(new_faces, dtype=np.int64)
+
+
+def _fan(first: FloatArray, last: FloatArray, along: FloatArray, turn: float) -> list[FloatArray]:
+    """Unit rays from `first` to `last`, at most 60 degrees apart, the outer ones a full depth out in between."""
+    angle = float(np.arccos(np.clip(first @ last, -1.0, 1.0)))
+    steps = max(1, int(np.ceil(max(angle, turn) / np.radians(60.0))))
+    across = last - (first @ last) * first
+    size = float(np.linalg.norm(across))
+    # a tip that turns right back: the rays are opposite and the fan goes round by the way ahead
+    across = across / size if size > 1e-6 else along
+    rays = [np.cos(angle * j / steps) * first + np.sin(angle * j / steps) * across for j in range(1, steps)]
+    return [first, *(ray / np.cos(0.5 * angle / steps) for ray in rays), last]
+
+
+def _fill(surface: Surface, loop: IntArray, first: int) -> tuple[FloatArray, IntArray]:
+    """Triangles over a hole: a fan from its middle where that sees the whole rim, else the rim's own triangulation."""
+    # the mould lies on the left of its border, the filling on the right: run the other way
+    rim = surface.faces[loop // 3, loop % 3][::-1]
+    points = surface.vertices[rim]
+    following = np.roll(points, -1, axis=0)
+    weight = np.linalg.norm(following - points, axis=1) + np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1)
+    middle = np.average(points, axis=0, weights=weight)
+    doubled = np.cross(points - middle, following - middle)
+    normal = doubled.sum(axis=0)
+    size = float(np.linalg.norm(normal))
+    fan = np.stack([np.full(len(rim), first), rim, np.roll(rim, -1)], axis=1)
+    if size > 0 and (doubled @ normal < 1e-9 * size * size / len(rim)).any():
+        ears = _triangulate(points - middle, normal / size)
+        if ears is not None:
+            return np.empty((0, 3)), rim[ears]
+    return middle[None], fan
+
+
+def _triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:
+    """Triangulation (n - 2, 3) of a polygon seen along its normal; None where it overlaps itself as seen so."""
+    import mapbox_earcut
+
+    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    across /= np.linalg.norm(across)
+    flat = np.stack([points @ across, points @ np.cross(normal, across)], axis=1)
+    ears = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], dtype=np.uint32)).reshape(-1, 3).astype(np.int64)
+    a, b, c = (flat[ears[:, k]] for k in range(3))
+    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    whole = float(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]))
+    covers = len(ears) == len(flat) - 2 and np.isclose(np.abs(area).sum(), whole, rtol=1e-9)
+    if not covers or np.abs(area).min() <= 1e-12 * whole:
+        return None
+    ears[area < 0] = ears[area < 0][:, ::-1]
+    return ears

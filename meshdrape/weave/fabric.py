@@ -1,0 +1,60 @@
+"""The woven sheet: two families of inextensible fibres hinged where they cross."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from meshdrape.errors import FabricError
+
+
+@dataclass(frozen=True)
+class Fabric:
+    """A weave as the draping sees it.
+
+    Attributes
+    ----------
+    spacing : float or (float, float)
+        Distance from node to node, mm: one for both families, or (along warp, along weft).
+    initial_angle : float
+        Angle from warp to weft of the undeformed cloth, rad.
+    locking_angle : float
+        Shear at which the ribbons touch and the cloth locks, rad.
+
+    Raises
+    ------
+    FabricError
+        If a spacing is not positive and finite, or an angle is out of range.
+    """
+
+    spacing: float | tuple[float, float]
+    initial_angle: float = math.pi / 2
+    locking_angle: float = math.radians(7.0)
+
+    def __post_init__(self) -> None:
+        """Check every number once."""
+        spacings = self.spacing if isinstance(self.spacing, tuple | list) else (self.spacing, self.spacing)
+        if len(spacings) != 2:
+            msg = f"spacing has {len(spacings)} values; give one, or two: along warp and along weft"
+            raise FabricError(msg)
+        for name, value in zip(("warp", "weft"), spacings, strict=True):
+            if not (math.isfinite(value) and value > 0):
+                msg = f"{name} spacing is {value:g} mm; it must be a positive length"
+                raise FabricError(msg)
+        if not math.radians(5) <= self.initial_angle <= math.radians(175):
+            msg = f"initial angle is {math.degrees(self.initial_angle):g} degrees; it must lie between 5 and 175"
+            raise FabricError(msg)
+        if not 0 < self.locking_angle < math.pi / 2:
+            msg = f"locking angle is {math.degrees(self.locking_angle):g} degrees; it must lie between 0 and 90"
+            raise FabricError(msg)
+        object.__setattr__(self, "spacing", tuple(float(v) for v in spacings) if spacings[0] != spacings[1] else float(spacings[0]))
+
+    @property
+    def warp_spacing(self) -> float:
+        """Distance between neighbouring nodes of a warp fibre, mm."""
+        return self.spacing[0] if isinstance(self.spacing, tuple) else self.spacing
+
+    @property
+    def weft_spacing(self) -> float:
+        """Distance between neighbouring nodes of a weft fibre, mm."""
+        return self.spacing[1] if isinstance(self.spacing, tuple) else self.spacing

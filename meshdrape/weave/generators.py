@@ -1,0 +1,150 @@
+"""The two generator fibres, and the lattice they open."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshdrape.errors import NetError
+from meshdrape.kernels.emit import border_status
+from meshdrape.kernels.generator import trace
+from meshdrape.kernels.tables import Lattice, Start
+from meshdrape.surface import Surface
+from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.start import SeedStar
+from meshdrape.weave.status import NodeStatus
+
+# Bytes a lattice takes per entry: face, place, two directions, status.
+ENTRY_BYTES = 4 + 16 + 16 + 16 + 1
+# A node this near to the border, in spacings, counts as on the mould.
+BORDER_SLACK = 1e-6
+# Sense of the four half-fibres along warp and weft.
+SENSE = ((1, 0), (0, 1), (-1, 0), (0, -1))
+
+
+def generator_counts(surface: Surface, fabric: Fabric, extent: tuple[float, float, float, float] | None) -> list[int]:
+    """Most nodes each half-fibre (+warp, +weft, -warp, -weft) can have.
+
+    Bounded by the cloth's extent (warp-, warp+, weft-, weft+ from the seed, mm), else by pi times the diagonal of the
+    bounding box: more than once round any convex mould.
+    """
+    reach = np.pi * float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
+    lengths = [reach] * 4
+    if extent is not None:
+        lengths = [min(reach, extent[k]) for k in (1, 3, 0, 2)]
+    spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
+    # a cloth whose extent is a whole number of spacings keeps its last node
+    return [int(length / step + 1e-9) for length, step in zip(lengths, spacing, strict=True)]
+
+
+def lay_generators(
+    surface: Surface, fabric: Fabric, star: SeedStar, counts: list[int], memory: int
+) -> tuple[Lattice, Start]:
+    """A lattice with the seed and both generators in place; everything else NOT_REACHED.
+
+    Parameters
+    ----------
+    memory : int
+        Bytes the lattice may take.
+
+    Raises
+    ------
+    NetError
+        If the lattice does not fit: with the count of nodes and the spacing that would.
+    """
+    mesh = surface.unfolding
+    spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
+    halves = []
+    for half in range(4):
+        n = counts[half]
+        check_memory(n + 1, 1, fabric, memory)
+        fibre = (np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3)))
+        _, set_nodes, _ = trace(
+            mesh, star.face[half], *star.xy[half], *star.out[half], star.far_edge[half], spacing[half], n, *fibre
+        )
+        halves.append([array[:set_nodes] for array in fibre])
+    plus_i, plus_j, minus_i, minus_j = (len(fibre[0]) for fibre in halves)
+    shape = (minus_i + plus_i + 1, minus_j + plus_j + 1)
+    check_memory(*shape, fabric, memory)
+    lattice = empty_lattice(shape)
+    i0, j0 = minus_i, minus_j
+    lattice.face[i0, j0] = star.face[0]
+    lattice.xy[i0, j0] = star.xy[0]
+    lattice.status[i0, j0] = NodeStatus.PLACED
+    arrival = np.zeros((4, max(shape), 2))
+    for half, (face, xy, out, into) in enumerate(halves):
+        si, sj = SENSE[half]
+        k = np.arange(1, len(face) + 1)
+        i, j = i0 + si * k, j0 + sj * k
+        lattice.face[i, j] = face
+        lattice.xy[i, j] = xy
+        side = np.empty(len(face), dtype=np.uint8)
+        border_status(mesh, face, xy, border_slack(fabric), side)
+        lattice.status[i, j] = side
+        arrival[half, : len(face)] = into
+        # the edge that leaves each node but the last, kept at its lower index
+        if si:
+            lattice.warp_out[i[:-1] - (si < 0), j0] = out[:-1]
+        else:
+            lattice.weft_out[i0, j[:-1] - (sj < 0)] = out[:-1]
+    start = Start(
+        index=np.array([i0, j0]), face=star.face, xy=star.xy, out=star.out, sector=star.sector, arrival=arrival
+    )
+    _keep_seed_edges(lattice, start, (plus_i, plus_j, minus_i, minus_j))
+    return lattice, start
+
+
+def _keep_seed_edges(lattice: Lattice, start: Start, lengths: tuple[int, int, int, int]) -> None:
+    """Keep the four edges at the seed, each in the frame in which its half-fibre starts."""
+    i0, j0 = start.index
+    plus_i, plus_j, minus_i, minus_j = lengths
+    if plus_i:
+        lattice.warp_out[i0, j0] = start.out[0]
+    if plus_j:
+        lattice.weft_out[i0, j0] = start.out[1]
+    if minus_i:
+        lattice.warp_out[i0 - 1, j0] = start.out[2]
+    if minus_j:
+        lattice.weft_out[i0, j0 - 1] = start.out[3]
+
+
+def border_slack(fabric: Fabric) -> float:
+    """Distance from the border within which a node still counts as on the mould, mm."""
+    return BORDER_SLACK * min(fabric.warp_spacing, fabric.weft_spacing)
+
+
+def empty_lattice(shape: tuple[int, int]) -> Lattice:
+    """A lattice of NOT_REACHED nodes; the rest of it is not initialised, so memory is touched only where nodes fall."""
+    return Lattice(
+        face=np.empty(shape, dtype=np.int32),
+        xy=np.empty((*shape, 2)),
+        warp_out=np.empty((*shape, 2)),
+        weft_out=np.empty((*shape, 2)),
+        status=np.full(shape, NodeStatus.NOT_REACHED, dtype=np.uint8),
+    )
+
+
+def check_memory(n_warp: int, n_weft: int, fabric: Fabric, memory: int) -> None:
+    """Raise NetError if a lattice of this shape takes more than `memory` bytes."""
+    entries = n_warp * n_weft
+    if entries * ENTRY_BYTES > memory:
+        larger = fabric.warp_spacing * np.sqrt(entries * ENTRY_BYTES / memory)
+        msg = (
+            f"a spacing of {fabric.spacing} mm gives {n_warp} x {n_weft} = {entries:,} nodes, "
+            f"{entries * ENTRY_BYTES / 2**30:.1f} GiB where {memory / 2**30:.1f} GiB are free; "
+            f"take a spacing above {larger:.2g} mm or bound the cloth with --extent"
+        )
+        raise NetError(msg)
+
+
+def free_memory() -> int:
+    """Bytes a net may take: three fifths of what the machine has free."""
+    try:
+        with open("/proc/meminfo") as lines:
+            for line in lines:
+                if line.startswith("MemAvailable"):
+                    return int(line.split()[1]) * 1024 * 3 // 5
+    except OSError:
+        pass
+    return 4 * 2**30
+

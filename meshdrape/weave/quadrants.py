@@ -1,0 +1,95 @@
+"""The four quadrants between the generators, filled tile by tile on all threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshdrape.kernels.sweep import sweep
+from meshdrape.kernels.tables import Lattice, Start
+from meshdrape.surface import Surface
+from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.generators import border_slack
+from meshdrape.weave.status import NodeStatus
+
+# A tile is large enough that handing it out costs nothing, small enough to keep both threads busy to the end.
+TILE = 192
+
+
+@dataclass(frozen=True)
+class _Tile:
+    si: int
+    sj: int
+    a: int
+    b: int
+
+
+def gap_tolerance(surface: Surface, fabric: Fabric) -> float:
+    """Largest gap left between the ends of a node's two edges, mm: the round-off of places on the largest face."""
+    largest = float(np.abs(surface.unfolding.corner).max())
+    return 1e-11 * min(fabric.warp_spacing, fabric.weft_spacing) + 32 * np.finfo(float).eps * largest
+
+
+def fill(
+    surface: Surface,
+    fabric: Fabric,
+    lattice: Lattice,
+    start: Start,
+    threads: int,
+    progress: Callable[[int], None] | None = None,
+) -> None:
+    """Place every node that its parents allow, outward from both generators.
+
+    Each node depends on its parents alone, so the tiles' order, and with it the number of threads, changes nothing.
+    """
+    i0, j0 = (int(v) for v in start.index)
+    n_warp, n_weft = lattice.status.shape
+    spans = {1: (n_warp - 1 - i0, n_weft - 1 - j0), -1: (i0, j0)}
+    tolerance = gap_tolerance(surface, fabric)
+    slack = border_slack(fabric)
+    mesh = surface.unfolding
+
+    def run(tile: _Tile) -> int:
+        span_i, span_j = spans[tile.si][0], spans[tile.sj][1]
+        report = np.zeros(4, dtype=np.int64)
+        first_i = i0 + tile.si * (1 + tile.a * TILE)
+        first_j = j0 + tile.sj * (1 + tile.b * TILE)
+        count_i, count_j = min(TILE, span_i - tile.a * TILE), min(TILE, span_j - tile.b * TILE)
+        while not sweep(
+            mesh, lattice, start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
+            fabric.warp_spacing, fabric.weft_spacing, tolerance, slack, report,
+        ):  # fmt: skip
+            pass
+        return int(report[0])
+
+    waiting: dict[_Tile, int] = {}
+    for si in (1, -1):
+        for sj in (1, -1):
+            for a in range(-(-spans[si][0] // TILE)):
+                for b in range(-(-spans[sj][1] // TILE)):
+                    waiting[_Tile(si, sj, a, b)] = (a > 0) + (b > 0)
+    placed = 0
+    with ThreadPoolExecutor(threads) as pool:
+        running: dict[Future[int], _Tile] = {}
+        for tile in [tile for tile, parents in waiting.items() if parents == 0]:
+            running[pool.submit(run, tile)] = tile
+        while running:
+            finished, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in finished:
+                tile = running.pop(future)
+                placed += future.result()
+                for child in (_Tile(tile.si, tile.sj, tile.a + 1, tile.b), _Tile(tile.si, tile.sj, tile.a, tile.b + 1)):
+                    if child in waiting:
+                        waiting[child] -= 1
+                        if waiting[child] == 0:
+                            running[pool.submit(run, child)] = child
+            if progress is not None:
+                progress(placed)
+
+
+def lost(lattice: Lattice) -> int:
+    """Nodes that fabric should have and the drape could not place."""
+    return int(np.count_nonzero((lattice.status > NodeStatus.OUTSIDE) & (lattice.status < NodeStatus.NOT_REACHED)))

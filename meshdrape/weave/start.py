@@ -1,0 +1,160 @@
+"""The seed point and the four half-fibres that leave it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshdrape.errors import StartError
+from meshdrape.kernels.generator import corner_angle, corner_place, turn_about_vertex
+from meshdrape.surface import Surface, SurfacePoint
+
+FloatArray = NDArray[np.float64]
+
+# Barycentric distance below which a seed lies on the edge or the vertex: round-off of projecting it.
+SNAP = 1e-9
+
+
+@dataclass(frozen=True)
+class SeedStar:
+    """The four half-fibres at the seed, +warp, +weft, -warp, -weft, each in the face it enters.
+
+    Attributes
+    ----------
+    face : (4,) int32
+    xy : (4, 2) the seed in the frame of each face, mm
+    out : (4, 2) unit directions in those frames
+    far_edge : (4,) the edge each half-fibre must cross first where the seed is a vertex, else -1
+    sector : (4,) angles between neighbouring half-fibres, counter-clockwise, rad
+    """
+
+    face: NDArray[np.int32]
+    xy: FloatArray
+    out: FloatArray
+    far_edge: NDArray[np.int64]
+    sector: FloatArray
+
+
+def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initial_angle: float) -> SeedStar:
+    """Half-fibres of a seed: the warp along `direction`, projected, the weft at the initial angle from it.
+
+    The star of the seed is unfolded to its total angle A; counter-clockwise about the normal the half-fibres follow
+    at initial_angle A / 2 pi, A / 2 and A / 2 + initial_angle A / 2 pi.
+
+    Raises
+    ------
+    StartError
+        If the direction is zero, not finite, or along the normal.
+    """
+    along = np.asarray(direction, dtype=np.float64)
+    size = float(np.linalg.norm(along)) if along.shape == (3,) else math.nan
+    if not (math.isfinite(size) and size > 0):
+        msg = f"direction {_triple(along)} is no direction: give three numbers that are not all zero"
+        raise StartError(msg)
+    along = along / size
+    where = point.barycentric
+    corner = int(np.argmax(where))
+    if where[corner] >= 1 - SNAP:
+        return _at_vertex(surface, point.face, corner, along, initial_angle)
+    face = point.face
+    edge = int(np.argmin(where))
+    if where[edge] <= SNAP:
+        # on the edge opposite that corner: enter whichever face the direction points into more
+        across = int(surface.face_neighbour[face, (edge + 1) % 3])
+        if across >= 0 and _into(surface, across // 3, across % 3, along) > _into(
+            surface, face, (edge + 1) % 3, along
+        ):
+            position = point.position(surface)
+            face = across // 3
+            x, y = _in_frame(surface, face, position)
+            return _in_face(surface, face, x, y, along, initial_angle)
+    x, y = point.in_frame(surface)
+    return _in_face(surface, face, x, y, along, initial_angle)
+
+
+def _in_face(surface: Surface, face: int, x: float, y: float, along: FloatArray, initial_angle: float) -> SeedStar:
+    dx, dy = _planar(surface, face, along)
+    size = math.hypot(dx, dy)
+    if size < 1e-6:
+        raise StartError(_along_normal(along))
+    first = math.atan2(dy, dx)
+    angles = first + np.array([0.0, initial_angle, math.pi, math.pi + initial_angle])
+    return SeedStar(
+        face=np.full(4, face, dtype=np.int32),
+        xy=np.tile([x, y], (4, 1)),
+        out=np.stack([np.cos(angles), np.sin(angles)], axis=1),
+        far_edge=np.full(4, -1, dtype=np.int64),
+        sector=np.array([initial_angle, math.pi - initial_angle] * 2),
+    )
+
+
+def _at_vertex(surface: Surface, face: int, corner: int, along: FloatArray, initial_angle: float) -> SeedStar:
+    mesh = surface.unfolding
+    vertex = int(surface.faces[face, corner])
+    total = float(mesh.vertex_angle[vertex])
+    best: tuple[float, int, int, float, float] | None = None
+    f, k = face, corner
+    while True:
+        dx, dy = _planar(surface, f, along)
+        size = math.hypot(dx, dy)
+        sector, ex, ey = corner_angle(mesh, f, k)
+        if size > 1e-6:
+            at = math.atan2(ex * dy - ey * dx, ex * dx + ey * dy)
+            # how far out of this face's sector the projection points: none is best, then the longer projection
+            beyond = max(-at, at - sector, 0.0)
+            score = size if beyond <= 1e-9 else -beyond
+            if best is None or score > best[0] + 1e-12:
+                at = min(max(at, 0.0), sector)
+                c, s = math.cos(at), math.sin(at)
+                best = (score, f, k, c * ex - s * ey, s * ex + c * ey)
+        code = int(mesh.neighbour[f, (k + 2) % 3])
+        f, k = code // 3, code % 3
+        if f == face and k == corner:
+            break
+    if best is None:
+        raise StartError(_along_normal(along))
+    _, f, k, dx, dy = best
+    part = initial_angle / (2 * math.pi) * total
+    turns = [0.0, part, total / 2 - part, part]
+    faces, places, outs, far = [], [], [], []
+    for turn in turns:
+        f, k, dx, dy = turn_about_vertex(mesh, f, k, dx, dy, turn)
+        faces.append(f)
+        places.append(corner_place(mesh, f, k))
+        outs.append((dx, dy))
+        far.append((k + 1) % 3)
+    return SeedStar(
+        face=np.array(faces, dtype=np.int32),
+        xy=np.array(places, dtype=np.float64),
+        out=np.array(outs, dtype=np.float64),
+        far_edge=np.array(far, dtype=np.int64),
+        sector=np.array([part, total / 2 - part] * 2),
+    )
+
+
+def _planar(surface: Surface, face: int, along: FloatArray) -> tuple[float, float]:
+    frame = surface.unfolding.frame[face]
+    return float(along @ frame[3:6]), float(along @ frame[6:9])
+
+
+def _in_frame(surface: Surface, face: int, position: FloatArray) -> tuple[float, float]:
+    frame = surface.unfolding.frame[face]
+    return float((position - frame[:3]) @ frame[3:6]), float((position - frame[:3]) @ frame[6:9])
+
+
+def _into(surface: Surface, face: int, edge: int, along: FloatArray) -> float:
+    """How far `along` points from the edge into the face."""
+    dx, dy = _planar(surface, face, along)
+    line = surface.unfolding.line[face, 3 * edge : 3 * edge + 2]
+    return float(line[0] * dx + line[1] * dy)
+
+
+def _along_normal(along: FloatArray) -> str:
+    return f"direction {_triple(along)} is along the mould's normal at the seed; give one that runs along the surface"
+
+
+def _triple(vector: FloatArray) -> str:
+    return "(" + ", ".join(f"{v:g}" for v in np.ravel(vector)) + ")"
