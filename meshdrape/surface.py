@@ -28,6 +28,14 @@ class SurfacePoint:
     face: int
     barycentric: FloatArray
 
+    @classmethod
+    def from_frame(cls, surface: Surface, face: int, x: float, y: float) -> SurfacePoint:
+        """The point (x, y), mm, in the frame of a face."""
+        x1, x2, y2 = surface.unfolding.corner[face]
+        c = y / y2
+        b = (x - c * x2) / x1
+        return cls(int(face), np.array([1 - b - c, b, c]))
+
     def position(self, surface: Surface) -> FloatArray:
         """The point in space, shape (3,), mm."""
         return np.asarray(self.barycentric @ surface.vertices[surface.faces[self.face]])

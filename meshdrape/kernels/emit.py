@@ -231,17 +231,20 @@ def touching_cells(mesh, net, start, i_first, warp, weft, out):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def trim(net, touching):
-    """Take back the nodes off the mould at which no cell touches it: they become OUTSIDE."""
+def trim(net, touching, hem):
+    """Take back the nodes off the mould farther than `hem` cells from a cell that touches it: they become OUTSIDE."""
     n_warp, n_weft = net.status.shape
     for i in range(n_warp):
         for j in range(n_weft):
             if net.status[i, j] != OFF_MOULD:
                 continue
             kept = False
-            for a in range(max(i - 1, 0), min(i + 1, n_warp - 1)):
-                for b in range(max(j - 1, 0), min(j + 1, n_weft - 1)):
+            for a in range(max(i - 1 - hem, 0), min(i + 1 + hem, n_warp - 1)):
+                for b in range(max(j - 1 - hem, 0), min(j + 1 + hem, n_weft - 1)):
                     if touching[a, b]:
                         kept = True
+                        break
+                if kept:
+                    break
             if not kept:
                 net.status[i, j] = OUTSIDE

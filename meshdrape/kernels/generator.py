@@ -6,9 +6,12 @@ from numba import njit
 
 from meshdrape.kernels.walk import LEFT_SURFACE, MAX_CROSSINGS, WALKED
 
-# A path this near to a vertex, relative to the edge it crosses, runs through it: symmetric moulds give symmetric nets.
-# Moving the path there changes its length by the square of it.
-VERTEX_CATCH = 1e-9
+# A path this near to a vertex, relative to the edge it crosses, runs through it: round-off.
+VERTEX_TOUCH = 1e-9
+# So does one that aims beside it by less than half the vertex's defect and less than this angle, rad: which side it
+# passed would turn it by more than that. Symmetric moulds then give symmetric nets, and a fibre along mesh edges keeps
+# to them. A flat vertex catches nothing.
+VERTEX_AIM = 1e-4
 
 
 @njit(cache=True, error_model="numpy")
@@ -68,17 +71,22 @@ def turn_about_vertex(mesh, face, k, dx, dy, angle):
 
 
 @njit(cache=True, error_model="numpy")
-def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, node_out, node_in):
+def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, node_out, node_in, through):
     """Follow the straightest geodesic from (x, y) and set a node every `spacing`, at most `count`.
 
     Straight over edges, equal angles on both sides through a vertex (Polthier and Schmies, Straightest geodesics on
     polyhedral surfaces, 1998). A start on a vertex names the opposite edge in `only`, the first to be crossed; -1
     elsewhere. The start is not written. node_face (count,), node_xy, node_out, node_in (count, 2)
-    get each node's face and place, and the directions in which the fibre leaves and reaches it, in that face's frame.
+    get each node's face and place, and the directions in which the fibre leaves and reaches it, in that face's frame;
+    through (count,) whether a vertex lies on the edge that reaches it.
 
     Returns (code, nodes set, length followed): LEFT_SURFACE where the surface ends first.
     """
     n = 0
+    # where the current straight piece began, seen in the current frame, and how far along the fibre that is
+    sx = x
+    sy = y
+    begun = 0.0
     done = 0.0
     entered = -1
     for _ in range(MAX_CROSSINGS * 10):
@@ -107,7 +115,10 @@ def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, no
             node_out[n, 1] = dy
             node_in[n, 0] = dx
             node_in[n, 1] = dy
+            sx = node_xy[n, 0]
+            sy = node_xy[n, 1]
             n += 1
+            begun = n * spacing
         if n == count:
             return WALKED, n, done
         done += exit_at
@@ -118,10 +129,23 @@ def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, no
         for k in (exit_edge, (exit_edge + 1) % 3):
             cx, cy = corner_place(mesh, face, k)
             ox, oy = corner_place(mesh, face, (2 * exit_edge + 1 - k) % 3)
-            reach = VERTEX_CATCH * math.sqrt((ox - cx) ** 2 + (oy - cy) ** 2)
-            if (x - cx) ** 2 + (y - cy) ** 2 <= reach * reach:
+            edge = math.sqrt((ox - cx) ** 2 + (oy - cy) ** 2)
+            defect = abs(2.0 * math.pi - mesh.vertex_angle[mesh.vertex[face, k]])
+            aim = min(VERTEX_AIM, 0.5 * defect) * min(edge, math.sqrt((cx - sx) ** 2 + (cy - sy) ** 2))
+            reach = max(VERTEX_TOUCH * edge, aim)
+            if abs((cx - sx) * dy - (cy - sy) * dx) <= reach and (x - cx) ** 2 + (y - cy) ** 2 <= 16.0 * reach * reach:
                 caught = k
         if caught >= 0:
+            # aim the straight piece at the vertex itself, so that the fibre's length stays its own
+            x, y = corner_place(mesh, face, caught)
+            length = math.sqrt((x - sx) ** 2 + (y - sy) ** 2)
+            if length > 0.0:
+                dx = (x - sx) / length
+                dy = (y - sy) / length
+            done = begun + length
+            begun = done
+            if n < count and done > n * spacing + 1e-9 * spacing:
+                through[n] = True
             total = mesh.vertex_angle[mesh.vertex[face, caught]]
             if total <= 0.0:
                 return LEFT_SURFACE, n, done
@@ -129,6 +153,8 @@ def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, no
             if face < 0:
                 return LEFT_SURFACE, n, done
             x, y = corner_place(mesh, face, k)
+            sx = x
+            sy = y
             # the line may run along a side of this face: only the far edge can be its exit
             only = (k + 1) % 3
             entered = -1
@@ -141,6 +167,7 @@ def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, no
         tx = mesh.crossing[face, 4 * exit_edge + 2]
         ty = mesh.crossing[face, 4 * exit_edge + 3]
         x, y = c * x - s * y + tx, s * x + c * y + ty
+        sx, sy = c * sx - s * sy + tx, s * sx + c * sy + ty
         dx, dy = c * dx - s * dy, s * dx + c * dy
         face = code // 3
         entered = code % 3

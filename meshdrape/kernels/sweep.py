@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from numba import njit
 
 from meshdrape.kernels.place import NOT_CONVERGED, OUTSIDE, PLACED, place
@@ -12,6 +13,12 @@ NOT_REACHED = 8
 
 WARP = 0
 WEFT = 1
+
+
+@njit(cache=True, error_model="numpy")
+def edge_key(net, family, i, j):
+    """Number of the edge kept at [i, j] of its family."""
+    return 2 * (i * net.status.shape[1] + j) + family
 
 
 @njit(cache=True, error_model="numpy")
@@ -60,6 +67,13 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
         half = 1 if hj > tj else 3
         ex = start.arrival[half, abs(hj - j0) - 1, 0]
         ey = start.arrival[half, abs(hj - j0) - 1, 1]
+    elif ox * ox + oy * oy > 2.0:
+        # a bent edge: twice a unit vector marks it
+        at = np.searchsorted(start.bent_key, edge_key(net, family, min(ti, hi), min(tj, hj)))
+        sx = start.bent_ends[at, 0]
+        sy = start.bent_ends[at, 1]
+        ex = start.bent_ends[at, 2]
+        ey = start.bent_ends[at, 3]
     elif tail_face == head_face:
         ex = ox
         ey = oy
@@ -248,6 +262,9 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 known = False
                 status[i, j] = code
                 if code == NOT_CONVERGED:
+                    face[i, j] = f
+                    xy[i, j, 0] = x
+                    xy[i, j, 1] = y
                     report[2] = i
                     report[3] = j
                     return False

@@ -72,3 +72,9 @@ class Start(NamedTuple):
     """(4,) angle from each half-fibre to the next, counter-clockwise, rad."""
     arrival: FloatArray
     """(4, n, 2) direction in which each half-fibre reaches its first, second ... node, in that node's frame."""
+    through: NDArray[np.bool_]
+    """(4, n) whether a half-fibre runs through a vertex on its first, second ... edge."""
+    bent_key: NDArray[np.int64]
+    """(k,) keys of the edges that bend at a saddle vertex, ascending: no straight walk from the tail reaches the head."""
+    bent_ends: FloatArray
+    """(k, 4) their directions at the tail and at the head, in the frames of the nodes' faces."""

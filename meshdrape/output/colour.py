@@ -97,7 +97,9 @@ def _srgb(lab: NDArray[np.float64]) -> NDArray[np.float64]:
     f = np.stack([middle + lab[..., 1] / 500, middle, middle - lab[..., 2] / 200], axis=-1)
     ratio = np.where(f**3 > 216 / 24389, f**3, (116 * f - 16) * 27 / 24389)
     linear = np.maximum((ratio * _WHITE) @ np.linalg.inv(_XYZ).T, 0.0)
-    return 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return np.asarray(
+        255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    )
 
 
 _TABLE: Final = _table()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Final
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from meshdrape.output.colour import WARP, WEFT
 from meshdrape.output.columns import COLOUR, POSITION, fill
 from meshdrape.output.comments import to_comments
-from meshdrape.output.fibres import round_step, warp_fibres, weft_fibres
+from meshdrape.output.fibres import every_nth, round_step, warp_fibres, weft_fibres
 from meshdrape.output.ply import Element, ply_writer
 
 if TYPE_CHECKING:
@@ -45,32 +46,48 @@ def write_fibres_ply(net: Net, path: str | os.PathLike[str], every: int | None =
     """
     if every is None:
         every = round_step(max(net.node_status.shape) / _FIBRES_PER_FAMILY)
-    warp, weft = warp_fibres(net, every), weft_fibres(net, every)
-    families = [(warp, True, WARP), (weft, False, WEFT)]
-    present = [~np.isnan(fibres.position[..., 0]) for fibres, _, _ in families]
-    nodes = Element("vertex", sum(int(p.sum()) for p in present), NODE)
-    segments = Element("edge", sum(int((p[:, :-1] & p[:, 1:]).sum()) for p in present), SEGMENT)
+    j = every_nth(net.node_status.shape[1], every, net.seed_index[1])
+    i = every_nth(net.node_status.shape[0], every, net.seed_index[0])
+    families = [_Family(j, warp_fibres(net, j), WARP), _Family(i, weft_fibres(net, i), WEFT)]
+    nodes = Element("vertex", sum(int(family.there.sum()) for family in families), NODE)
+    segments = Element("edge", sum(int(family.joined.sum()) for family in families), SEGMENT)
     made = {"meshdrape": version("meshdrape"), "unit": "mm", "every": every}
     with ply_writer(path, [nodes, segments], to_comments(made)) as ply:
-        for (fibres, is_warp, colour), there in zip(families, present, strict=True):
-            rows = nodes.rows(int(there.sum()))
-            fibre, along = np.nonzero(there)
-            across = fibres.number[fibre]
-            rows["i"], rows["j"] = (along, across) if is_warp else (across, along)
-            fill(rows, POSITION, fibres.position[there])
-            fill(rows, COLOUR, np.broadcast_to(colour, (len(rows), 4)))
+        for family, across, along in zip(families, ("j", "i"), ("i", "j"), strict=True):
+            rows = nodes.rows(int(family.there.sum()))
+            fibre, rows[along] = np.nonzero(family.there)
+            rows[across] = family.number[fibre]
+            fill(rows, POSITION, family.position[family.there])
+            fill(rows, COLOUR, np.broadcast_to(family.colour, (len(rows), 4)))
             ply.write("vertex", rows)
-        first = 0
-        for (_, _, colour), there in zip(families, present, strict=True):
-            rows = segments.rows(int((there[:, :-1] & there[:, 1:]).sum()))
-            fill(rows, ("vertex1", "vertex2"), _segments(there, first))
-            fill(rows, COLOUR, np.broadcast_to(colour, (len(rows), 4)))
+        first = 0  # vertex of the family's first node
+        for family in families:
+            rows = segments.rows(int(family.joined.sum()))
+            fill(rows, ("vertex1", "vertex2"), first + family.segments())
+            fill(rows, COLOUR, np.broadcast_to(family.colour, (len(rows), 4)))
             ply.write("edge", rows)
-            first += int(there.sum())
+            first += int(family.there.sum())
 
 
-def _segments(there: NDArray[np.bool_], first: int) -> NDArray[np.int64]:
-    """Return the vertices at the two ends of each step along the fibres, (n, 2), where both ends are there."""
-    vertex = (first - 1 + np.cumsum(there)).reshape(there.shape)
-    both = there[:, :-1] & there[:, 1:]
-    return np.stack([vertex[:, :-1][both], vertex[:, 1:][both]], axis=1)
+@dataclass(frozen=True, eq=False)
+class _Family:
+    """Fibres of one family, (n_fibres, n_nodes, 3), and their numbers in the net."""
+
+    number: NDArray[np.int64]
+    position: NDArray[np.float64]
+    colour: tuple[int, int, int, int]
+
+    @property
+    def there(self) -> NDArray[np.bool_]:
+        """Where there is a node, (n_fibres, n_nodes)."""
+        return ~np.isnan(self.position[..., 0])
+
+    @property
+    def joined(self) -> NDArray[np.bool_]:
+        """Where there is one and another after it, (n_fibres, n_nodes - 1)."""
+        return self.there[:, :-1] & self.there[:, 1:]
+
+    def segments(self) -> NDArray[np.int64]:
+        """Return the nodes at the ends of each step along the fibres, counted over those there, (n, 2)."""
+        node = (np.cumsum(self.there) - 1).reshape(self.there.shape)
+        return np.stack([node[:, :-1][self.joined], node[:, 1:][self.joined]], axis=1)

@@ -107,9 +107,9 @@ def write_ply(net: Net, path: str | os.PathLike[str], measures: Measures | None 
 
     Vertices are the nodes that have a position, in rows along the weft: `x y z` (mm), `i j`, colour,
     `quality` (absolute shear, deg; 0 where there is no whole cell), `s t` (mm of cloth from the seed along
-    warp and weft), `shear_deg` (signed), `warp_x ... weft_z`, `status`. Faces are the cells, counter-clockwise
-    about the mould's normal, with colour, `quality` and `shear_deg`. A third element, `gap`, holds the
-    statuses of the nodes without position as runs. The comments say how the net was made.
+    warp and weft), `shear_deg` (signed), `warp_x ... weft_z`, `status`. Faces are the cells, their corners
+    counter-clockwise about the mould's normal, with colour, `quality` and `shear_deg`. A third element,
+    `gap`, holds the statuses of the nodes without position as runs. The comments say how the net was made.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def _blocks(n_rows: int, row_length: int) -> Iterator[tuple[int, int]]:
 
 
 def _n_cells(has_position: NDArray[np.bool_]) -> int:
-    """Count the cells have all four corners."""
+    """Count the cells that have all four corners."""
     return sum(
         int(_whole(has_position[start : end + 1]).sum())
         for start, end in _blocks(has_position.shape[0] - 1, has_position.shape[1])
@@ -201,7 +201,7 @@ def _node_rows(
     rows["s"] = (rows["i"] - net.seed_index[0]) * net.fabric.warp_spacing
     rows["t"] = (rows["j"] - net.seed_index[1]) * net.fabric.weft_spacing
     rows["status"] = net.node_status[start:end][has_position]
-    fill_shear(rows, measures.node_shear[start:end][has_position], net.fabric.locking_angle)
+    fill_shear(rows, measures.node_shear(start, end)[has_position], net.fabric.locking_angle)
     return rows
 
 
@@ -220,7 +220,7 @@ def _cell_rows(
 
 
 def _gaps(status: NDArray[np.uint8], has_position: NDArray[np.bool_]) -> Rows:
-    """Return the runs of one status among the nodes without position, along the weft and on into the next row."""
+    """Return the runs of one status among the nodes without position, row after row of the net."""
     without = np.where(has_position, np.uint8(NodeStatus.PLACED), status).ravel()
     start = np.flatnonzero(np.diff(without, prepend=np.uint8(NodeStatus.PLACED)))
     length = np.diff(start, append=without.size)

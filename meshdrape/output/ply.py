@@ -95,7 +95,7 @@ class PlyWriter:
             msg = f"{len(rows)} rows of {name} do not fit where {self._expected[:1]} are expected"
             raise ValueError(msg)
         self._expected[0] = (name, self._expected[0][1] - len(rows))
-        self._file.write(memoryview(rows.view(np.uint8)))
+        self._file.write(rows.data)
 
     def check_complete(self) -> None:
         """Raise ValueError if rows that the header announces were not written."""

@@ -28,8 +28,10 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 # Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
-# find a place on it.
-COLLAR_DEPTH = 3.0
+# find a place on it; two more carry the hem.
+COLLAR_DEPTH = 4.0
+# Cells of cloth kept past the last that touches the mould.
+HEM = 2
 
 
 def drape(
@@ -111,7 +113,7 @@ def drape(
     memory = free_memory()
     counts = generator_counts(part, fabric, extent)
     lattice, start = lay_generators(surface, fabric, star, counts, memory)
-    lattice, start = _fill_all(surface, fabric, lattice, start, counts, memory, threads, progress)
+    lattice, start, settled = _fill_all(surface, fabric, lattice, start, counts, memory, threads, progress)
     _trim(surface, fabric, lattice, start, threads)
     return Net(
         mould=mould,
@@ -124,6 +126,7 @@ def drape(
         seed_distance=distance,
         direction=star.out[0, 0] * frame[3:6] + star.out[0, 1] * frame[6:9],
         notes=tuple(notes),
+        settled_by_libigl=settled,
         threads=threads,
     )
 
@@ -162,13 +165,15 @@ def _fill_all(
     memory: int,
     threads: int,
     progress: Callable[[int], None] | None,
-) -> tuple[Lattice, Start]:
+) -> tuple[Lattice, Start, int]:
     """Fill the quadrants; where the mould goes on past the generators' ends, give the lattice room and fill on."""
+    settled = 0
     while True:
-        fill(surface, fabric, lattice, start, threads, progress)
+        start, more = fill(surface, fabric, lattice, start, threads, progress)
+        settled += more
         grow = _room_wanted(lattice, start, counts)
         if not any(grow):
-            return lattice, start
+            return lattice, start, settled
         lattice, start = _grown(lattice, start, grow, fabric, memory)
 
 
@@ -203,7 +208,11 @@ def _grown(
     # nothing beyond a generator's end is ever on that generator
     larger.status[:, j0][np.r_[0:before_i, before_i + n_warp : shape[0]]] = NodeStatus.OUTSIDE
     larger.status[i0, :][np.r_[0:before_j, before_j + n_weft : shape[1]]] = NodeStatus.OUTSIDE
-    return larger, start._replace(index=np.array([i0, j0]))
+    # bent edges are known by their place in the lattice
+    cell, family = start.bent_key // 2, start.bent_key % 2
+    i, j = cell // n_weft + before_i, cell % n_weft + before_j
+    moved = start._replace(index=np.array([i0, j0]), bent_key=2 * (i * shape[1] + j) + family)
+    return larger, moved
 
 
 def _trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, threads: int) -> None:
@@ -218,4 +227,4 @@ def _trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, thre
         ],
         threads,
     )
-    emit.trim(lattice, touching)
+    emit.trim(lattice, touching, HEM)

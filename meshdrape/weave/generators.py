@@ -58,7 +58,7 @@ def lay_generators(
     for half in range(4):
         n = counts[half]
         check_memory(n + 1, 1, fabric, memory)
-        fibre = (np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3)))
+        fibre = (np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3)), np.zeros(n, dtype=np.bool_))
         _, set_nodes, _ = trace(
             mesh, star.face[half], *star.xy[half], *star.out[half], star.far_edge[half], spacing[half], n, *fibre
         )
@@ -72,7 +72,8 @@ def lay_generators(
     lattice.xy[i0, j0] = star.xy[0]
     lattice.status[i0, j0] = NodeStatus.PLACED
     arrival = np.zeros((4, max(shape), 2))
-    for half, (face, xy, out, into) in enumerate(halves):
+    through = np.zeros((4, max(shape)), dtype=np.bool_)
+    for half, (face, xy, out, into, passes) in enumerate(halves):
         si, sj = SENSE[half]
         k = np.arange(1, len(face) + 1)
         i, j = i0 + si * k, j0 + sj * k
@@ -82,13 +83,22 @@ def lay_generators(
         border_status(mesh, face, xy, border_slack(fabric), side)
         lattice.status[i, j] = side
         arrival[half, : len(face)] = into
+        through[half, : len(face)] = passes
         # the edge that leaves each node but the last, kept at its lower index
         if si:
             lattice.warp_out[i[:-1] - (si < 0), j0] = out[:-1]
         else:
             lattice.weft_out[i0, j[:-1] - (sj < 0)] = out[:-1]
     start = Start(
-        index=np.array([i0, j0]), face=star.face, xy=star.xy, out=star.out, sector=star.sector, arrival=arrival
+        index=np.array([i0, j0]),
+        face=star.face,
+        xy=star.xy,
+        out=star.out,
+        sector=star.sector,
+        arrival=arrival,
+        through=through,
+        bent_key=np.empty(0, dtype=np.int64),
+        bent_ends=np.empty((0, 4)),
     )
     _keep_seed_edges(lattice, start, (plus_i, plus_j, minus_i, minus_j))
     return lattice, start

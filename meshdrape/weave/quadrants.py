@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshdrape.kernels.sweep import sweep
+from meshdrape.kernels.sweep import WARP, WEFT, edge_key, keep_edge, sweep
 from meshdrape.kernels.tables import Lattice, Start
+from meshdrape.kernels.walk import off_mould
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
+from meshdrape.weave.settle import NodeSearch
 from meshdrape.weave.status import NodeStatus
 
 # A tile is large enough that handing it out costs nothing, small enough to keep both threads busy to the end.
@@ -40,11 +44,19 @@ def fill(
     start: Start,
     threads: int,
     progress: Callable[[int], None] | None = None,
-) -> None:
+) -> tuple[Start, int]:
     """Place every node that its parents allow, outward from both generators.
 
     Each node depends on its parents alone, so the tiles' order, and with it the number of threads, changes nothing.
+
+    Returns
+    -------
+    start : Start
+        With the bent edges of the nodes that libigl settled.
+    settled : int
+        Their number.
     """
+    bent = BentEdges(start)
     i0, j0 = (int(v) for v in start.index)
     n_warp, n_weft = lattice.status.shape
     spans = {1: (n_warp - 1 - i0, n_weft - 1 - j0), -1: (i0, j0)}
@@ -52,18 +64,19 @@ def fill(
     slack = border_slack(fabric)
     mesh = surface.unfolding
 
-    def run(tile: _Tile) -> int:
+    def run(tile: _Tile) -> tuple[int, int]:
         span_i, span_j = spans[tile.si][0], spans[tile.sj][1]
         report = np.zeros(4, dtype=np.int64)
         first_i = i0 + tile.si * (1 + tile.a * TILE)
         first_j = j0 + tile.sj * (1 + tile.b * TILE)
         count_i, count_j = min(TILE, span_i - tile.a * TILE), min(TILE, span_j - tile.b * TILE)
+        settled = 0
         while not sweep(
-            mesh, lattice, start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
+            mesh, lattice, bent.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
             fabric.warp_spacing, fabric.weft_spacing, tolerance, slack, report,
         ):  # fmt: skip
-            pass
-        return int(report[0])
+            settled += _settle_node(surface, fabric, lattice, bent, int(report[2]), int(report[3]), tile, slack)
+        return int(report[0]), settled
 
     waiting: dict[_Tile, int] = {}
     for si in (1, -1):
@@ -71,16 +84,16 @@ def fill(
             for a in range(-(-spans[si][0] // TILE)):
                 for b in range(-(-spans[sj][1] // TILE)):
                     waiting[_Tile(si, sj, a, b)] = (a > 0) + (b > 0)
-    placed = 0
+    placed = settled = 0
     with ThreadPoolExecutor(threads) as pool:
-        running: dict[Future[int], _Tile] = {}
+        running: dict[Future[tuple[int, int]], _Tile] = {}
         for tile in [tile for tile, parents in waiting.items() if parents == 0]:
             running[pool.submit(run, tile)] = tile
         while running:
             finished, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in finished:
                 tile = running.pop(future)
-                placed += future.result()
+                placed, settled = placed + future.result()[0], settled + future.result()[1]
                 for child in (_Tile(tile.si, tile.sj, tile.a + 1, tile.b), _Tile(tile.si, tile.sj, tile.a, tile.b + 1)):
                     if child in waiting:
                         waiting[child] -= 1
@@ -88,8 +101,52 @@ def fill(
                             running[pool.submit(run, child)] = child
             if progress is not None:
                 progress(placed)
+    return bent.start, settled
 
 
-def lost(lattice: Lattice) -> int:
-    """Nodes that fabric should have and the drape could not place."""
-    return int(np.count_nonzero((lattice.status > NodeStatus.OUTSIDE) & (lattice.status < NodeStatus.NOT_REACHED)))
+class BentEdges:
+    """The bent edges found so far, kept sorted in a `Start` that sweeps read.
+
+    A sweep reads only edges of its own tile and of tiles done before it, so it does not matter that the table is
+    replaced while another sweep runs.
+    """
+
+    def __init__(self, start: Start) -> None:
+        self.start = start
+        self._lock = Lock()
+
+    def add(self, key: int, ends: NDArray[np.float64]) -> None:
+        """Keep an edge's directions at both ends, (4,)."""
+        with self._lock:
+            at = int(np.searchsorted(self.start.bent_key, key))
+            self.start = self.start._replace(
+                bent_key=np.insert(self.start.bent_key, at, key),
+                bent_ends=np.insert(self.start.bent_ends, at, ends, axis=0),
+            )
+
+
+def _settle_node(
+    surface: Surface, fabric: Fabric, lattice: Lattice, bent: BentEdges, i: int, j: int, tile: _Tile, slack: float
+) -> bool:
+    """Have libigl place a node that straight paths did not close on; whether it did."""
+
+    def place(at: tuple[int, int]) -> tuple[int, float, float]:
+        return int(lattice.face[at]), float(lattice.xy[at][0]), float(lattice.xy[at][1])
+
+    a, b = (i - tile.si, j), (i, j - tile.sj)
+    search = NodeSearch(surface, place(a), place(b), fabric.warp_spacing, fabric.weft_spacing)
+    # where the sweep gave up, it left the end of the warp edge's path
+    found = search.run(place((i, j)), float(tile.si * tile.sj))
+    if found is None:
+        return False
+    lattice.face[i, j], lattice.xy[i, j] = found.place[0], found.place[1:]
+    for family, edge, parent, step in ((WARP, found.warp_edge, a, tile.si), (WEFT, found.weft_edge, b, tile.sj)):
+        keep_edge(lattice, bent.start, family, *parent, step, *edge.leave, *edge.arrive)
+        if edge.bent:
+            at = (min(i, parent[0]), min(j, parent[1]))
+            kept = (lattice.warp_out, lattice.weft_out)[family]
+            kept[at] *= 2.0 / np.linalg.norm(kept[at])
+            bent.add(int(edge_key(lattice, family, *at)), np.concatenate([edge.leave, edge.arrive]))
+    off = off_mould(surface.unfolding, *found.place, slack)
+    lattice.status[i, j] = NodeStatus.OFF_MOULD if off else NodeStatus.PLACED
+    return True

@@ -56,13 +56,16 @@ class KnownNet:
 @dataclass(frozen=True, eq=False)
 class KnownMeasures:
     cell_shear: NDArray[np.float64]
-    node_shear: NDArray[np.float64]
+    cell_touches_mould: NDArray[np.bool_]
+    shear_of_nodes: NDArray[np.float64]
     max_shear: float
     max_shear_cell: tuple[int, int]
     max_shear_position: NDArray[np.float64]
     max_shear_face: int
     over_locking_fraction: float
-    coverage_fraction: float = 1.0
+
+    def node_shear(self, first, last):
+        return self.shear_of_nodes[first:last]
 
 
 def measured(net):
@@ -89,7 +92,8 @@ def measured(net):
     magnitude = np.abs(cell_shear[~np.isnan(cell_shear)])
     return KnownMeasures(
         cell_shear=cell_shear,
-        node_shear=node_shear,
+        cell_touches_mould=~np.isnan(cell_shear),
+        shear_of_nodes=node_shear,
         max_shear=float(magnitude.max()),
         max_shear_cell=(int(i), int(j)),
         max_shear_position=p[i : i + 2, j : j + 2].mean(axis=(0, 1)),

@@ -1,0 +1,111 @@
+"""Exact polyhedral distances, through libigl; the only module that imports it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshdrape.errors import StartError
+from meshdrape.geodesic.patch import Patch, faces_between
+from meshdrape.surface import Surface, SurfacePoint
+
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    class HasSurface(Protocol):
+        """Anything with a surface: a Mould."""
+
+        @property
+        def surface(self) -> Surface:
+            """The triangle mesh."""
+
+FloatArray = NDArray[np.float64]
+
+
+def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray:
+    """Shortest distances on a patch from one vertex to others, mm.
+
+    References
+    ----------
+    Mitchell, Mount, Papadimitriou, The discrete geodesic problem, SIAM J. Comput. 16 (1987); libigl's exact_geodesic.
+    """
+    import igl
+
+    vertices, faces = patch.arrays()
+    # all by keyword: given positionally without targets the binding returns an empty array, silently
+    found = igl.exact_geodesic(
+        V=vertices,
+        F=faces,
+        VS=np.array([source], dtype=np.int64),
+        FS=np.empty(0, dtype=np.int64),
+        VT=np.array(targets, dtype=np.int64),
+        FT=np.empty(0, dtype=np.int64),
+    )
+    return np.asarray(found, dtype=np.float64)
+
+
+def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike) -> float:
+    """Length of the shortest path on a mould between two points, mm.
+
+    Exact on the polyhedron. Points off the mould are projected on it first.
+
+    Parameters
+    ----------
+    mould : Mould
+    point_a, point_b : (3,) float, mm
+
+    Raises
+    ------
+    StartError
+        If a point is not three finite numbers, or the points lie on separate parts of the mould.
+    """
+    surface = mould.surface
+    ends = []
+    for name, point in (("first", point_a), ("second", point_b)):
+        p = np.asarray(point, dtype=np.float64)
+        if p.shape != (3,) or not np.isfinite(p).all():
+            msg = f"the {name} point {p.tolist()} is not a point; give X, Y, Z in mm"
+            raise StartError(msg)
+        ends.append(surface.closest_point(p)[0])
+    a, b = ends
+    if surface.face_component[a.face] != surface.face_component[b.face]:
+        msg = f"the points lie on separate parts of the mould (faces {a.face} and {b.face}): no path joins them"
+        raise StartError(msg)
+    return surface_distance(surface, a, b)[0]
+
+
+def surface_distance(
+    surface: Surface, a: SurfacePoint, b: SurfacePoint, bound: float | None = None
+) -> tuple[float, float]:
+    """Shortest distance between two points of a surface, and how far snapping moved its ends in all, mm.
+
+    The patch searched grows until no shorter path can lie outside: a path of length d stays where the distances in
+    space to both ends sum to d at most.
+
+    Parameters
+    ----------
+    bound : float, optional
+        A length the distance is not expected to exceed, mm.
+    """
+    chord = float(np.linalg.norm(a.position(surface) - b.position(surface)))
+    size = float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
+    reach = max(bound or 0.0, 1.1 * chord, 1e-9 * size)
+    while True:
+        faces = faces_between(surface, a, b, reach)
+        if len(faces):
+            patch = Patch(surface, faces)
+            va, moved_a = patch.insert(a.face, a.position(surface))
+            vb, moved_b = patch.insert(b.face, b.position(surface))
+            if va == vb:
+                return 0.0, moved_a + moved_b
+            found = float(exact_distances(patch, va, [vb])[0])
+            # on the whole component, or no longer than the paths the patch is sure to hold
+            if found <= reach * (1 + 1e-12) or len(faces) == len(surface.faces):
+                return found, moved_a + moved_b
+            reach = max(found, 1.5 * reach) if np.isfinite(found) else 2 * reach
+        elif reach > 100 * size:
+            return float("inf"), 0.0
+        else:
+            reach *= 2

@@ -1,0 +1,217 @@
+"""Nodes that libigl decides: the authority where straight paths cannot reach, or where none is to be trusted.
+
+Behind a saddle vertex lies a shadow that no straight path enters: the shortest path to a node in there bends at the
+vertex. Distances know nothing of that, so a node is found from distances alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshdrape.geodesic.distance import exact_distances
+from meshdrape.geodesic.patch import Patch, faces_between
+from meshdrape.kernels.walk import WALKED, walk
+from meshdrape.surface import Surface, SurfacePoint
+
+FloatArray = NDArray[np.float64]
+Place = tuple[int, float, float]
+
+# Distances are met to this share of the spacing; libigl's own round-off is about 1e-13.
+MET = 3e-11
+MAX_TRIALS = 30
+# Step of the differences that give an edge its directions, in spacings: their error is its square.
+STEP = 1e-4
+# Straight paths that end this near to the node, in spacings, are the edges themselves.
+STRAIGHT = 1e-10
+
+
+@dataclass(frozen=True)
+class Edge:
+    """An edge to a settled node.
+
+    Attributes
+    ----------
+    leave, arrive : (2,)
+        Unit directions at the parent and at the node, in the frames of their faces.
+    bent : bool
+        Whether the shortest path turns at a vertex, so that no straight walk from the parent ends at the node.
+    """
+
+    leave: FloatArray
+    arrive: FloatArray
+    bent: bool
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A node found from distances alone: its place (face, x, y) and the edges to its two parents."""
+
+    place: Place
+    warp_edge: Edge
+    weft_edge: Edge
+
+
+class NodeSearch:
+    """The search for the node at shortest distance `warp` from A and `weft` from B.
+
+    Parameters
+    ----------
+    a, b : (face, x, y)
+        The parents in the frames of their faces, mm.
+    warp, weft : float
+        Spacing, mm.
+    """
+
+    def __init__(self, surface: Surface, a: Place, b: Place, warp: float, weft: float) -> None:
+        self.surface = surface
+        self.a, self.b = a, b
+        self.length = np.array([warp, weft])
+        point_a, point_b = SurfacePoint.from_frame(surface, *a), SurfacePoint.from_frame(surface, *b)
+        # whatever lies within one spacing of either, and a margin for trial points beyond the node
+        reach = 1.2 * (warp + weft)
+        faces = np.union1d(
+            faces_between(surface, point_a, point_a, reach), faces_between(surface, point_b, point_b, reach)
+        )
+        self.bare = Patch(surface, faces)
+        self.patch = self.bare.copy()
+        self.parents = [self.patch.insert(p.face, p.position(surface))[0] for p in (point_a, point_b)]
+
+    def run(self, guess: Place, side: float) -> Settled | None:
+        """The node nearest to a guess, on the side where A's edge meets B's counter-clockwise (`side` 1) or not (-1).
+
+        None where there is no such point, or the search does not close.
+        """
+        place = self._meet(guess)
+        if place is None:
+            return None
+        slope = self._slopes(place)
+        if slope is None:
+            return None
+        # the gradient of a distance is the direction in which its path arrives
+        arrive = slope / np.linalg.norm(slope, axis=1)[:, None]
+        if (arrive[0, 0] * arrive[1, 1] - arrive[0, 1] * arrive[1, 0]) * side <= 0:
+            return None
+        edges = []
+        for parent, length, into in zip((self.a, self.b), self.length, arrive, strict=True):
+            edge = self._edge(parent, place, float(length), into)
+            if edge is None:
+                return None
+            edges.append(edge)
+        return Settled(place, *edges)
+
+    def distances(self, place: Place) -> FloatArray | None:
+        """Shortest distances (2,) from a place to A and to B, mm; None where it lies off the patch."""
+        trial = self.patch.copy()
+        vertex = _insert(trial, self.surface, place)
+        return None if vertex is None else exact_distances(trial, vertex, self.parents)
+
+    def _meet(self, guess: Place) -> Place | None:
+        """Broyden's method on the two distances, in the plane of the guess's face unfolded along straight paths."""
+        shift = np.zeros(2)
+        found = self.distances(guess)
+        slope = self._slopes(guess)
+        if found is None or slope is None:
+            return None
+        miss = found - self.length
+        inverse = _inverse(slope)
+        place: Place | None = guess
+        for _ in range(MAX_TRIALS):
+            if np.abs(miss / self.length).max() <= MET:
+                return place
+            move = -inverse @ miss
+            size = float(np.linalg.norm(move))
+            longest = 0.3 * float(self.length.min())
+            if size > longest:
+                move *= longest / size
+            place = step_from(self.surface, guess, shift + move)
+            found = None if place is None else self.distances(place)
+            if found is None:
+                return None
+            change = found - self.length - miss
+            shift, miss = shift + move, miss + change
+            # good Broyden: the inverse that maps this change to this move, nearest to the last
+            mapped = inverse @ change
+            scale = float(move @ mapped)
+            if abs(scale) > 1e-3 * float(move @ move):
+                inverse = inverse + np.outer(move - mapped, move @ inverse) / scale
+        return None
+
+    def _slopes(self, place: Place) -> FloatArray | None:
+        """Gradients (2, 2) of the distances to A and to B at a place, in the frame of its face."""
+        step = STEP * float(self.length.min())
+        slopes = np.empty((2, 2))
+        for axis in range(2):
+            ends = []
+            for sense in (step, -step):
+                near = step_from(self.surface, place, sense * np.eye(2)[axis])
+                found = None if near is None else self.distances(near)
+                if found is None:
+                    return None
+                ends.append(found)
+            slopes[:, axis] = (ends[0] - ends[1]) / (2 * step)
+        return slopes if np.linalg.norm(slopes, axis=1).min() > 0.1 else None
+
+    def _edge(self, parent: Place, place: Place, length: float, arrive: FloatArray) -> Edge | None:
+        """The edge from a parent to the node: straight where a straight path gets there, else bent."""
+        leave = self._leaving(parent, place, length)
+        if leave is None:
+            return None
+        target = SurfacePoint.from_frame(self.surface, *place).position(self.surface)
+        straight = leave
+        for _ in range(3):
+            code, face, x, y, dx, dy = walk(self.surface.unfolding, *parent, *straight, length)
+            if code != WALKED:
+                break
+            frame = self.surface.unfolding.frame[face]
+            end = (x + length * dx, y + length * dy)
+            off = target - frame[:3]
+            gap = np.array([off @ frame[3:6] - end[0], off @ frame[6:9] - end[1]])
+            if float(np.linalg.norm(target - frame[:3] - end[0] * frame[3:6] - end[1] * frame[6:9])) <= STRAIGHT * length:
+                return Edge(straight, arrive, bent=False)
+            turn = float(gap @ np.array([-dy, dx])) / length
+            straight = straight + turn * np.array([-straight[1], straight[0]])
+            straight = straight / np.linalg.norm(straight)
+        return Edge(leave, arrive, bent=True)
+
+    def _leaving(self, parent: Place, place: Place, length: float) -> FloatArray | None:
+        """Direction (2,) at a parent in which the shortest path to the node leaves: less the distance's gradient."""
+        step = STEP * length
+        slope = np.empty(2)
+        for axis in range(2):
+            ends = []
+            for sense in (step, -step):
+                near = step_from(self.surface, parent, sense * np.eye(2)[axis])
+                trial = self.bare.copy()
+                source = None if near is None else _insert(trial, self.surface, near)
+                target = _insert(trial, self.surface, place)
+                if source is None or target is None:
+                    return None
+                ends.append(float(exact_distances(trial, source, [target])[0]))
+            slope[axis] = (ends[0] - ends[1]) / (2 * step)
+        size = float(np.linalg.norm(slope))
+        return -slope / size if size > 0.1 else None
+
+
+def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
+    """The place reached by walking straight on by `move` (2,), mm in the frame of the place's face; None off the surface."""
+    length = float(np.linalg.norm(move))
+    if length == 0:
+        return place
+    dx, dy = move / length
+    code, face, x, y, dx, dy = walk(surface.unfolding, *place, dx, dy, length)
+    return (int(face), x + length * dx, y + length * dy) if code == WALKED else None
+
+
+def _insert(patch: Patch, surface: Surface, place: Place) -> int | None:
+    try:
+        return patch.insert(place[0], SurfacePoint.from_frame(surface, *place).position(surface))[0]
+    except KeyError:
+        return None
+
+
+def _inverse(slope: FloatArray) -> FloatArray:
+    """Inverse of the slopes; where the two are nearly parallel, the pseudo-inverse."""
+    return np.asarray(np.linalg.pinv(slope, rcond=1e-6))
