@@ -34,13 +34,17 @@ def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray
     import igl
 
     vertices, faces = patch.arrays()
+    # libigl reads 0 at vertices that no face uses: hand it none
+    used, compact = np.unique(faces, return_inverse=True)
+    vertices, faces = vertices[used], compact.reshape(-1, 3)
+    ends = np.searchsorted(used, [source, *targets])
     # all by keyword: given positionally without targets the binding returns an empty array, silently
     found = igl.exact_geodesic(
         V=vertices,
         F=faces,
-        VS=np.array([source], dtype=np.int64),
+        VS=ends[:1],
         FS=np.empty(0, dtype=np.int64),
-        VT=np.array(targets, dtype=np.int64),
+        VT=ends[1:],
         FT=np.empty(0, dtype=np.int64),
     )
     return np.asarray(found, dtype=np.float64)
@@ -95,17 +99,27 @@ def surface_distance(
     while True:
         faces = faces_between(surface, a, b, reach)
         if len(faces):
-            patch = Patch(surface, faces)
-            va, moved_a = patch.insert(a.face, a.position(surface))
-            vb, moved_b = patch.insert(b.face, b.position(surface))
-            if va == vb:
-                return 0.0, moved_a + moved_b
-            found = float(exact_distances(patch, va, [vb])[0])
+            found, moved = _on_patch(Patch.around(surface, faces, a, b, reach), surface, a, b)
+            if not chord * (1 - 1e-9) <= found < float("inf"):
+                # not reached, or libigl's 0 for a target not reached: cut off by a hull too small
+                found, moved = _on_patch(Patch(surface, faces), surface, a, b)
             # on the whole component, or no longer than the paths the patch is sure to hold
             if found <= reach * (1 + 1e-12) or len(faces) == len(surface.faces):
-                return found, moved_a + moved_b
+                return found, moved
             reach = max(found, 1.5 * reach) if np.isfinite(found) else 2 * reach
         elif reach > 100 * size:
             return float("inf"), 0.0
         else:
             reach *= 2
+
+
+def _on_patch(patch: Patch, surface: Surface, a: SurfacePoint, b: SurfacePoint) -> tuple[float, float]:
+    """Distance from a to b on a patch, and how far snapping moved them in all; infinite where the patch lost one."""
+    try:
+        start, moved_a = patch.insert(a.face, a.position(surface))
+        end, moved_b = patch.insert(b.face, b.position(surface))
+    except KeyError:
+        return float("inf"), 0.0
+    if start == end:
+        return 0.0, moved_a + moved_b
+    return float(exact_distances(patch, start, [end])[0]), moved_a + moved_b

@@ -29,9 +29,31 @@ class Patch:
     def __init__(self, surface: Surface, faces: IntArray) -> None:
         used, compact = np.unique(surface.faces[faces], return_inverse=True)
         self._vertices: list[FloatArray] = list(surface.vertices[used])
-        self._faces: list[tuple[int, int, int]] = [(int(a), int(b), int(c)) for a, b, c in compact.reshape(-1, 3)]
-        self._pieces: dict[int, list[int]] = {int(face): [n] for n, face in enumerate(faces)}
-        self._parent: list[int] = [int(face) for face in faces]
+        self._faces: list[tuple[int, int, int]] = []
+        self._pieces: dict[int, list[int]] = {}
+        self._parent: list[int] = []
+        for face, (a, b, c) in zip(faces.tolist(), compact.reshape(-1, 3).tolist(), strict=True):
+            self._add(face, (a, b, c))
+
+    @classmethod
+    def around(cls, surface: Surface, faces: IntArray, a: SurfacePoint, b: SurfacePoint, reach: float) -> Patch:
+        """A patch that holds all paths from a to b no longer than `reach` (mm), cut out of the faces around them.
+
+        Of triangles much larger than the paths only the part near them is kept: libigl drops what is below a
+        millionth of an edge, and that must be small beside the path, not beside the mould.
+        """
+        ends = (a, b)
+        places = [end.position(surface) for end in ends]
+        centre, radius = 0.5 * (places[0] + places[1]), 0.55 * reach
+        corners = surface.vertices[surface.faces[faces]]
+        if float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()) <= 8 * radius:
+            return cls(surface, faces)
+        return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius)
+
+    def _add(self, face: int, triangle: tuple[int, int, int]) -> None:
+        self._pieces.setdefault(face, []).append(len(self._faces))
+        self._faces.append(triangle)
+        self._parent.append(face)
 
     def copy(self) -> Patch:
         """A patch of its own, to insert a trial point into."""
@@ -63,15 +85,18 @@ class Patch:
         Raises
         ------
         KeyError
-            If the patch does not hold the face.
+            If the patch does not hold the point.
         """
         p = np.asarray(position, dtype=np.float64)
         best = -np.inf
         piece, weight = -1, np.zeros(3)
-        for n in self._pieces[face]:
+        # a point on the edge of a face that was cut away belongs to the face beyond as well
+        for n in self._pieces.get(face, range(len(self._faces))):
             found = self._barycentric(n, p)
             if found.min() > best:
                 best, piece, weight = float(found.min()), n, found
+        if best < -1e-6:
+            raise KeyError(face)
         a, b, c = self._faces[piece]
         corner = int(np.argmax(weight))
         if 1 - weight[corner] <= SNAP:
@@ -112,6 +137,96 @@ class Patch:
             self._pieces[parent].append(len(self._faces))
             self._faces.append(piece)
             self._parent.append(parent)
+
+
+def _cut(
+    patch: Patch, surface: Surface, faces: IntArray, ends: tuple[SurfacePoint, ...], centre: FloatArray, radius: float
+) -> Patch:
+    """Fill an empty patch with the hull, face by face, of what a ball keeps of the edges, and of the end points.
+
+    A path inside the ball crosses a face between two kept pieces of its edges, or from an end: the hull holds it.
+    """
+    number: dict[tuple[int, int, int], int] = {}
+
+    def vertex(key: tuple[int, int, int], position: FloatArray) -> int:
+        if key not in number:
+            number[key] = len(patch._vertices)
+            patch._vertices.append(position)
+        return number[key]
+
+    for face in faces.tolist():
+        ring: list[int] = []
+        for k in range(3):
+            u, v = sorted((int(surface.faces[face, k]), int(surface.faces[face, (k + 1) % 3])))
+            kept = _kept_piece(surface.vertices[u], surface.vertices[v], centre, radius)
+            if kept is None:
+                continue
+            piece = []
+            for side, t in enumerate(kept):
+                position = surface.vertices[u] + t * (surface.vertices[v] - surface.vertices[u])
+                # a piece that goes to the corner ends in the mesh's own vertex
+                key = (u, u, 0) if t == 0 else (v, v, 0) if t == 1 else (u, v, side)
+                piece.append(vertex(key, position))
+            ring += piece if u == surface.faces[face, k] else piece[::-1]
+        inside = [end.position(surface) for end in ends if end.face == face and end.barycentric.min() > SNAP]
+        first = len(patch._vertices)
+        frame = surface.unfolding.frame[face]
+        if not ring and inside:
+            # the ball meets no edge: an octagon in it lies within the face and holds both ends
+            turns = np.arange(8) * (np.pi / 4)
+            around = np.outer(np.cos(turns), frame[3:6]) + np.outer(np.sin(turns), frame[6:9])
+            inside += list(inside[0] + (centre - inside[0]) @ frame[3:6] * frame[3:6]
+                           + (centre - inside[0]) @ frame[6:9] * frame[6:9] + radius * around)  # fmt: skip
+        # an end on an edge gives the face some depth, lest nothing be left of it but that edge
+        middle = surface.vertices[surface.faces[face]].mean(axis=0)
+        for end in ends:
+            if end.face == face:
+                inward = middle - end.position(surface)
+                inside.append(end.position(surface) + min(0.5, radius / float(np.linalg.norm(inward))) * inward)
+        patch._vertices += inside
+        points = list(dict.fromkeys(ring)) + list(range(first, first + len(inside)))
+        flat = {n: ((p := patch._vertices[n] - frame[:3]) @ frame[3:6], p @ frame[6:9]) for n in points}
+        hull = _hull(points, flat)
+        for n in range(1, len(hull) - 1):
+            patch._add(face, (hull[0], hull[n], hull[n + 1]))
+    return patch
+
+
+def _kept_piece(u: FloatArray, v: FloatArray, centre: FloatArray, radius: float) -> tuple[float, float] | None:
+    """Part of the edge u-v, as parameters in [0, 1], that lies in a ball; never a sliver of it; None outside."""
+    along = v - u
+    length = float(np.linalg.norm(along))
+    middle = float((centre - u) @ along) / length
+    off2 = float((centre - u) @ (centre - u)) - middle * middle
+    if off2 >= radius * radius:
+        return None
+    half = max(float(np.sqrt(radius * radius - off2)), 0.3 * radius)
+    low, high = (middle - half) / length, (middle + half) / length
+    if high <= 0 or low >= 1:
+        return None
+    margin = 0.1 * radius / length
+    return (0.0 if low < margin else low, 1.0 if high > 1 - margin else high)
+
+
+def _hull(points: list[int], flat: dict[int, tuple[float, float]]) -> list[int]:
+    """Convex hull, counter-clockwise, of points in a plane (Andrew's monotone chain)."""
+    if len(points) < 3:
+        return []
+    ordered = sorted(points, key=lambda n: flat[n])
+    size = max(abs(x - flat[ordered[0]][k]) for n in points for k, x in enumerate(flat[n]))
+    chains = []
+    for sequence in (ordered, ordered[::-1]):
+        chain: list[int] = []
+        for n in sequence:
+            while len(chain) > 1:
+                (ax, ay), (bx, by), (cx, cy) = flat[chain[-2]], flat[chain[-1]], flat[n]
+                if (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) > 1e-12 * size * size:
+                    break
+                chain.pop()
+            chain.append(n)
+        chains.append(chain[:-1])
+    hull = chains[0] + chains[1]
+    return hull if len(hull) > 2 else []
 
 
 def faces_between(surface: Surface, a: SurfacePoint, b: SurfacePoint, bound: float) -> IntArray:

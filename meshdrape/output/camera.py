@@ -17,6 +17,8 @@ _CANDIDATES: Final = 600  # directions tried, some 8 degrees apart
 _SAMPLE: Final = 2000  # normals they are judged by
 _TILT: Final = np.radians(36.0)  # from face-on, so that curvature shows
 _TURN: Final = 0.55  # tangent of the turn of a square mould; a longer one turns less and fills the frame
+_UPRIGHT: Final = 0.1  # of the surface shown, that z upwards in the picture is worth
+_NEAR: Final = 0.4  # of the cloth's size: how much mould is shown around it
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,21 +74,28 @@ def view_axes(normals: FloatArray, areas: FloatArray, points: FloatArray) -> Flo
         along, across = -along, -across
     length, width = np.ptp(points @ np.stack([along, across]).T, axis=0)
     turn = np.arctan(_TURN * min(1.0, width / max(length, 1e-12 + width)))
-    # four ways to turn and tilt: the one that shows most; the first, from the lower right, if all show alike
+    # four ways to turn and tilt: one that shows much and has z upwards; the first if there is nothing between
     ways = [_tilted(face_on, along, across, sign * turn, way * _TILT) for way in (1, -1) for sign in (1, -1)]
-    shown = [round(_shown(axes[2], normals, areas), 3) for axes in ways]
-    return ways[int(np.argmax(shown))]
+    merit = [round(_shown(axes[2], normals, areas) + _UPRIGHT * axes[1, 2], 3) for axes in ways]
+    return ways[int(np.argmax(merit))]
 
 
 def fitted(
-    axes: FloatArray, points: FloatArray, corner: tuple[float, float], width: float, heights: tuple[float, float]
+    axes: FloatArray,
+    subject: FloatArray,
+    surroundings: FloatArray,
+    corner: tuple[float, float],
+    width: float,
+    heights: tuple[float, float],
 ) -> tuple[View, float]:
-    """Return the view that fits points in a frame, and the height of the frame, pixels.
+    """Return the view that fits a subject and what is near it in a frame, and the height of the frame.
 
     Parameters
     ----------
     axes : (3, 3) float64
-    points : (m, 3) float64, mm
+    subject, surroundings : (n, 3) and (m, 3) float64, mm
+        Points that the frame must hold, and points it may hold: those farther from the subject than a part of
+        its size are let go.
     corner : (float, float)
         Lower left corner of the frame in the picture, pixels.
     width : float
@@ -94,12 +103,15 @@ def fitted(
     heights : (float, float)
         Least and most height of the frame, pixels; it is as high as the points need.
     """
-    flat = points @ axes[:2].T
+    flat, around = subject @ axes[:2].T, surroundings @ axes[:2].T
     low, high = flat.min(axis=0), flat.max(axis=0)
+    near = _NEAR * float((high - low).max())
+    low = np.minimum(low, np.maximum(low - near, around.min(axis=0)))
+    high = np.maximum(high, np.minimum(high + near, around.max(axis=0)))
     extent = np.maximum(high - low, 1e-9 * max(float(np.abs(flat).max()), 1.0))
     height = float(np.clip(width * extent[1] / extent[0], *heights))
     mm_per_pixel = float(max(extent[0] / width, extent[1] / height))
-    centre = 0.5 * (low + high) @ axes[:2] + (points[0] @ axes[2]) * axes[2]
+    centre = 0.5 * (low + high) @ axes[:2] + (subject[0] @ axes[2]) * axes[2]
     middle = np.array([corner[0] + 0.5 * width, corner[1] + 0.5 * height])
     return View(axes, centre, middle, mm_per_pixel), height
 
@@ -115,13 +127,14 @@ def _face_on(normals: FloatArray, areas: FloatArray) -> FloatArray:
     if size > 0:
         candidates = np.concatenate([mean[None] / size, candidates])
     shown = [_shown(toward, normals, areas) for toward in candidates]
-    best = candidates[int(np.argmax(shown))]
-    # round off to the mean normal where it shows as much: a dome is looked at along its axis
-    return candidates[0] if shown[0] > 0.995 * max(shown) else best
+    # rounded off to the mean normal where it shows as much: a dome is looked at along its axis
+    best = 0 if shown[0] > 0.995 * max(shown) else int(np.argmax(shown))
+    return np.asarray(candidates[best])
 
 
 def _shown(toward: FloatArray, normals: FloatArray, areas: FloatArray) -> float:
-    """Return how well a surface is seen, 0 to 1; the root makes a little of every face worth more than all of one."""
+    """Return how well a surface is seen, 0 to 1."""
+    # the root makes a little of every face worth more than all of one
     return float(areas @ np.sqrt(np.maximum(normals @ toward, 0.0)) / areas.sum())
 
 
@@ -132,7 +145,8 @@ def _longest(points: FloatArray, normal: FloatArray) -> FloatArray:
     values, vectors = np.linalg.eigh(flat.T @ flat)
     if values[2] > 1.2 * values[1]:
         return np.asarray(vectors[:, 2])
-    axis = np.eye(3)[int(np.argmin(np.abs(normal) + [0.0, 1e-6, 2e-6]))]  # as long as wide: keep to x
+    # as long as wide: keep to x, or to the next axis across the normal
+    axis = np.eye(3)[int(np.argmin(np.abs(normal) + np.array([0.0, 1e-6, 2e-6])))]
     along = axis - (axis @ normal) * normal
     return np.asarray(along / np.linalg.norm(along))
 
@@ -145,8 +159,12 @@ def _is_down(up: FloatArray) -> bool:
     return False
 
 
-def _tilted(face_on: FloatArray, along: FloatArray, across: FloatArray, turn: float, tilt: float) -> FloatArray:
-    """Return the axes after turning the object about its normal and tilting its upper edge away from the eye."""
+def _tilted(
+    face_on: FloatArray, along: FloatArray, across: FloatArray, turn: float, tilt: float
+) -> FloatArray:
+    """Return the axes after a turn of the object about its normal and a tilt of its upper edge away."""
     right = np.cos(turn) * along - np.sin(turn) * across
     up = np.sin(turn) * along + np.cos(turn) * across
-    return np.stack([right, np.cos(tilt) * up + np.sin(tilt) * face_on, np.cos(tilt) * face_on - np.sin(tilt) * up])
+    return np.stack(
+        [right, np.cos(tilt) * up + np.sin(tilt) * face_on, np.cos(tilt) * face_on - np.sin(tilt) * up]
+    )

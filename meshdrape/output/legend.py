@@ -98,11 +98,15 @@ def _verdict(net: Net, measures: Measures) -> tuple[str, str]:
         return "No whole cell of cloth on the mould", ""
     shear_deg, lock_deg = np.degrees(measures.max_shear), np.degrees(net.fabric.locking_angle)
     side = "above" if shear_deg > lock_deg else "below"
-    title = f"Largest shear {shear_deg:.1f}°, {abs(shear_deg - lock_deg):.1f}° {side} the locking angle of {lock_deg:g}°"
+    title = f"Largest shear {shear_deg:.1f}°, {abs(shear_deg - lock_deg):.1f}° {side} "
+    title += f"the locking angle of {lock_deg:g}°"
     x, y, z = measures.max_shear_position
     face = f", face {measures.max_shear_face}" if measures.max_shear_face else ""
     over = 100 * measures.over_locking_fraction
-    return title, f"at ({x:.0f}, {y:.0f}, {z:.0f}) mm{face}; {over:.1f} % of the cloth is above the locking angle"
+    return (
+        title,
+        f"at ({x:.0f}, {y:.0f}, {z:.0f}) mm{face}; {over:.1f} % of the cloth is above the locking angle",
+    )
 
 
 def _draped(net: Net) -> str:

@@ -27,8 +27,10 @@ _MARGIN: Final = 70
 _HEADER: Final = 190
 _FOOTER: Final = 210
 _HEIGHTS: Final = (480.0, 1060.0)  # of the drawing
+_BLEED: Final = 10  # of the drawing into header and footer
 _FIBRE_GAP: Final = 24.0
 _ARROW: Final = 120.0
+_LABEL_ROOM: Final = 260.0
 _OUTLINE: Final = (84, 88, 96)
 _SEAM: Final = (140, 144, 150)
 _WHITE: Final = (255, 255, 255)
@@ -38,10 +40,10 @@ _CREASE: Final = np.cos(np.radians(30.0))  # a sharper edge of the mould is draw
 def draw_net(net: Net, measures: Measures, path: str | os.PathLike[str]) -> None:
     """Draw a net on its mould in 3D, as PNG 2000 pixels wide; no screen is needed.
 
-    Cells have the colour of their shear on a scale anchored at the locking angle. Some fibres of both families
-    are drawn, the seed with the two directions, the place of the largest shear, a legend and a scale bar. The
-    view is chosen from the shape; it is a parallel projection, so that the scale bar holds everywhere. Of more
-    than 300,000 cells whole blocks are drawn, each in the colour of its largest shear.
+    Cells have the colour of their shear on a scale anchored at the locking angle. Some fibres of both
+    families are drawn, the seed with the two directions, the place of the largest shear, a legend and a scale
+    bar. The view is chosen from the shape; it is a parallel projection, so that the scale bar holds everywhere.
+    Of more than 300,000 cells whole blocks are drawn, each in the colour of its largest shear.
 
     Parameters
     ----------
@@ -69,8 +71,13 @@ def draw_net(net: Net, measures: Measures, path: str | os.PathLike[str]) -> None
     warp, weft, step = drawn_fibres(net, _FIBRE_GAP * view.mm_per_pixel, cells.block)
     stage.add_segments(weft, WEFT, 2.0)
     stage.add_segments(warp, WARP, 2.0)
+    for bottom, top in (
+        (0, _FOOTER - _BLEED),
+        (height - _HEADER + _BLEED, height),
+    ):  # a mould may reach beyond
+        stage.add_polygon([(0, bottom), (_WIDTH, bottom), (_WIDTH, top), (0, top)], _WHITE)
     _mark_seed(stage, net, view)
-    _mark_largest_shear(stage, measures, view)
+    _mark_largest_shear(stage, net, measures, view)
     add_title(stage, net, measures, _MARGIN, height - 30)
     add_colour_scale(stage, net.fabric.locking_angle)
     add_keys(stage, step)
@@ -87,9 +94,10 @@ def _view(mould: Mould, cells: DrawnCells) -> tuple[View, int]:
         normals, areas = cells.normals, cells.areas
     else:
         normals, areas = surface.face_normal, surface.face_area
-    points = np.concatenate([surface.vertices, cells.corners.reshape(-1, 3)])
-    axes = view_axes(normals, areas, surface.vertices)
-    view, drawing = fitted(axes, points, (_MARGIN, _FOOTER), _WIDTH - 2 * _MARGIN, _HEIGHTS)
+    cloth = cells.corners.reshape(-1, 3) if len(cells.corners) else surface.vertices
+    axes = view_axes(normals, areas, cloth)
+    frame = ((_MARGIN, _FOOTER), _WIDTH - 2 * _MARGIN, _HEIGHTS)
+    view, drawing = fitted(axes, cloth, surface.vertices, *frame)
     return view, round(_FOOTER + drawing + _HEADER)
 
 
@@ -102,16 +110,10 @@ def _add_mould(stage: Stage, mould: Mould, back: float) -> None:
     surface = mould.surface
     corners = surface.vertices[surface.faces]
     normal = surface.face_normal
-    at_vertex = np.stack(
-        [
-            np.bincount(
-                surface.faces.ravel(), (normal[:, k] * surface.face_area).repeat(3), minlength=len(surface.vertices)
-            )
-            for k in range(3)
-        ],
-        axis=1,
-    )
-    at_vertex /= np.maximum(np.linalg.norm(at_vertex, axis=1)[:, None], 1e-300)
+    at_vertex = np.zeros_like(surface.vertices)
+    for k in range(3):
+        np.add.at(at_vertex, surface.faces[:, k], normal * surface.face_area[:, None])
+    at_vertex = at_vertex / np.maximum(np.linalg.norm(at_vertex, axis=1)[:, None], 1e-300)
     smooth = at_vertex[surface.faces]
     is_sharp = np.einsum("mkd,md->mk", smooth, normal) < _CREASE
     stage.add_faces(corners, np.where(is_sharp[..., None], normal[:, None], smooth), NO_CLOTH, back=back)
@@ -152,21 +154,24 @@ def _arrow(stage: Stage, start: FloatArray, tip: FloatArray, colour: Colour) -> 
     along = (tip - start) / length
     side = np.array([-along[1], along[0]])
     head = min(26.0, 0.5 * length)
-    for rim, paint in ((3.0, _WHITE), (0.0, colour)):
+    paints: tuple[tuple[float, Colour], ...] = ((3.0, _WHITE), (0.0, colour))
+    for rim, paint in paints:
         stage.add_stroke(start, tip - 0.8 * head * along, paint, 7.0 + 2 * rim)
         wing = (0.45 * head + 1.5 * rim) * side
         foot = tip - (head + rim) * along
         stage.add_polygon([tip + 2.0 * rim * along, foot + wing, foot - wing], paint)
 
 
-def _mark_largest_shear(stage: Stage, measures: Measures, view: View) -> None:
-    """Ring the cell with the largest shear and write the shear beside it."""
+def _mark_largest_shear(stage: Stage, net: Net, measures: Measures, view: View) -> None:
+    """Ring the cell with the largest shear and write the shear beside it, on the side away from the seed."""
     if not np.isfinite(measures.max_shear):
         return
     place = view.pixels(measures.max_shear_position)
     for colour, width in ((_WHITE, 9.0), (INK, 4.0)):
         stage.add_ring(place, 20.0, colour, width)
-    is_left = place[0] < 0.5 * _WIDTH
+    is_right = bool(place[0] >= view.pixels(net.seed)[0])
+    if not _LABEL_ROOM < place[0] < _WIDTH - _LABEL_ROOM:
+        is_right = bool(place[0] < 0.5 * _WIDTH)
     text = f"max {np.degrees(measures.max_shear):.1f}°"
-    at = place + np.array([32.0 if is_left else -32.0, 0.0])
-    stage.add_text(text, at, 27, INK, align="left" if is_left else "right", bold=True, plate=True)
+    at = place + np.array([32.0 if is_right else -32.0, 0.0])
+    stage.add_text(text, at, 27, INK, align="left" if is_right else "right", bold=True, plate=True)

@@ -66,7 +66,7 @@ def drawn_cells(net: Net, measures: Measures, most: int = _MOST_QUADS) -> DrawnC
     n_cells = int(whole.sum())
     block = 1 if n_cells <= most else int(np.ceil(np.sqrt(n_cells / (0.8 * most))))
     shear = np.where(whole & np.isfinite(measures.cell_shear), np.abs(measures.cell_shear), -1.0)
-    full = _in_blocks(whole, block, True).all(axis=(1, 3))
+    full = np.asarray(_in_blocks(whole, block, True).all(axis=(1, 3)))
     worst = _in_blocks(shear, block, -1.0).max(axis=(1, 3))
     alone = whole & ~full.repeat(block, axis=0).repeat(block, axis=1)[: len(whole), : whole.shape[1]]
     if alone.sum() > 0.2 * most:
@@ -80,7 +80,9 @@ def drawn_cells(net: Net, measures: Measures, most: int = _MOST_QUADS) -> DrawnC
         corners.append(np.stack([points[0, j0], points[-1, j0], points[-1, j1], points[0, j1]], axis=1))
         values.append(worst[row, full[row]])
         i, j = np.nonzero(alone[i0:i1])
-        corners.append(np.stack([points[i, j], points[i + 1, j], points[i + 1, j + 1], points[i, j + 1]], axis=1))
+        corners.append(
+            np.stack([points[i, j], points[i + 1, j], points[i + 1, j + 1], points[i, j + 1]], axis=1)
+        )
         values.append(shear[i0 + i, j])
     drawn = np.concatenate([*values, np.empty(0)])
     return DrawnCells(
@@ -89,7 +91,7 @@ def drawn_cells(net: Net, measures: Measures, most: int = _MOST_QUADS) -> DrawnC
 
 
 def drawn_fibres(net: Net, gap: float, block: int) -> tuple[FloatArray, FloatArray, tuple[int, int]]:
-    """Return segments of warp and of weft fibres, (n, 2, 3) each, mm, and how many fibres each family steps by.
+    """Return segments of warp and of weft fibres, (n, 2, 3) each, mm, and the step from fibre to fibre.
 
     The fibres run along the edges of the drawn quads.
 

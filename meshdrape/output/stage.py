@@ -12,16 +12,16 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshdrape.errors import MissingLibraryError, missing_library
+from meshdrape.errors import MissingLibraryError
 from meshdrape.output.camera import View
 
 FloatArray = NDArray[np.float64]
 Colour = Sequence[int]  # red, green, blue in 0..255, and opacity where it is not 255
 
 _SAMPLES: Final = 8  # per pixel
-_LIGHT_FROM: Final = (-0.5, 0.8, 1.0)  # right, up, towards the eye
-_AMBIENT: Final = 0.5  # shading is gentle, so that colours can be compared with the legend
-_DIFFUSE: Final = 0.5
+_LIGHT_FROM: Final = (-0.4, 0.5, 1.0)  # right, up, towards the eye
+_AMBIENT: Final = 0.62  # shading is gentle, so that colours can be compared with the legend
+_DIFFUSE: Final = 0.4
 
 
 class Stage:
@@ -62,7 +62,13 @@ class Stage:
         self._window.AddRenderer(self._renderer)
 
     def add_faces(
-        self, corners: FloatArray, normals: FloatArray, colours: ArrayLike, *, back: float = 0.0, cull: bool = False
+        self,
+        corners: FloatArray,
+        normals: FloatArray,
+        colours: ArrayLike,
+        *,
+        back: float = 0.0,
+        cull: bool = False,
     ) -> None:
         """Add triangles or quads.
 
@@ -188,7 +194,7 @@ class Stage:
         return bytes(memoryview(writer.GetResult()))
 
     def _poly_data(self, points: FloatArray, back: float) -> Any:
-        """Return points (n, 3), mm, moved away from the eye, told from the view's centre to stay exact as float."""
+        """Return points (n, 3), mm, moved away from the eye; told from the view's centre, float is exact enough."""
         from vtkmodules.vtkCommonCore import vtkPoints
         from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -210,7 +216,7 @@ class Stage:
         return actor
 
     def _overlay(self) -> Any:
-        """Return the polygons as one actor: VTK sets up every actor anew, which costs more than drawing it."""
+        """Return the polygons as one actor: to set up an actor costs more than to draw it."""
         from vtkmodules.vtkCommonCore import vtkPoints
         from vtkmodules.vtkCommonDataModel import vtkPolyData
         from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D
@@ -247,20 +253,25 @@ class Stage:
 def _window() -> Any:
     """Return a window of VTK that draws in memory."""
     try:
-        # the modules that register the OpenGL and the text renderer
-        import vtkmodules.vtkRenderingFreeType
-        import vtkmodules.vtkRenderingOpenGL2 as opengl
-        from vtkmodules.vtkCommonCore import vtkLogger
+        from vtkmodules import vtkRenderingFreeType, vtkRenderingOpenGL2
+        from vtkmodules.vtkCommonCore import vtkObject
         from vtkmodules.vtkRenderingCore import vtkRenderWindow
     except ImportError as error:
+        from meshdrape.errors import missing_library
+
         raise missing_library(error) from None
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    window = opengl.vtkEGLRenderWindow() if hasattr(opengl, "vtkEGLRenderWindow") else vtkRenderWindow()
+    del vtkRenderingFreeType  # imported to register the renderer of texts
+    # elsewhere than on Linux the platform's own window draws in memory too
+    kind = getattr(vtkRenderingOpenGL2, "vtkEGLRenderWindow", vtkRenderWindow)
+    warned = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.SetGlobalWarningDisplay(0)
+    window = kind()
     window.SetOffScreenRendering(True)
     window.Initialize()
+    vtkObject.SetGlobalWarningDisplay(warned)
     # asked here, as VTK goes on without OpenGL and ends in a segmentation fault
     if not window.GetInitialized():
-        msg = "no OpenGL that draws without a screen: apt install libegl1 libgl1-mesa-dri, or leave the picture out"
+        msg = "no OpenGL that draws without a screen; apt install libegl1 libgl1-mesa-dri"
         raise MissingLibraryError(msg)
     return window
 

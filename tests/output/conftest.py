@@ -72,10 +72,17 @@ def measured(net):
     """Shear from the chords at the four corners of each cell."""
     p = net.node_position
     warp, weft = p[1:] - p[:-1], p[:, 1:] - p[:, :-1]
-    corners = [(warp[:, :-1], weft[:-1]), (warp[:, 1:], weft[1:]), (warp[:, :-1], weft[1:]), (warp[:, 1:], weft[:-1])]
+    corners = [
+        (warp[:, :-1], weft[:-1]),
+        (warp[:, 1:], weft[1:]),
+        (warp[:, :-1], weft[1:]),
+        (warp[:, 1:], weft[:-1]),
+    ]
     angle = [
         np.arccos(
-            np.clip(np.einsum("ijk,ijk->ij", a, b) / np.linalg.norm(a, axis=2) / np.linalg.norm(b, axis=2), -1, 1)
+            np.clip(
+                np.einsum("ijk,ijk->ij", a, b) / np.linalg.norm(a, axis=2) / np.linalg.norm(b, axis=2), -1, 1
+            )
         )
         for a, b in corners
     ]
@@ -115,7 +122,9 @@ def flat_net(n_warp=30, n_weft=20, spacing=(2.0, 3.0), shear_deg=5.0, hole=True)
     sigma = np.pi / 2 - np.radians(shear_deg)
     i, j = np.meshgrid(np.arange(n_warp), np.arange(n_weft), indexing="ij")
     u, v = i * fabric.warp_spacing, j * fabric.weft_spacing
-    position = np.stack([u + v * np.cos(sigma), v * np.sin(sigma), np.zeros_like(u)], axis=2) + [0.1, 1 / 3, 7.0]
+    position = np.stack(
+        [0.1 + u + v * np.cos(sigma), 1 / 3 + v * np.sin(sigma), np.full_like(u, 7.0)], axis=2
+    )
     status = np.zeros((n_warp, n_weft), dtype=np.uint8)
     status[:, -1] = NodeStatus.OFF_MOULD
     if hole:
@@ -152,21 +161,31 @@ def sphere_net(half=20, spacing=40.0, radius=1000.0):
                     away = along - position[half + si * (i - 1), half + sj * (j - 1)]
                     position[half + si * i, half + sj * j] = along + np.sign(across @ away) * across
     theta, phi = np.meshgrid(np.linspace(0.0, 1.5, 40), np.linspace(0, 2 * np.pi, 121), indexing="ij")
-    dome = radius * np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=2)
+    dome = radius * np.stack(
+        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=2
+    )
     merged = np.concatenate([dome[:1, 0], dome[1:, :-1].reshape(-1, 3)])
-    index = np.concatenate([np.zeros((1, 121), dtype=int), 1 + np.tile(np.r_[0:120, 0], (39, 1)) + 120 * np.arange(39)[:, None]])
+    index = np.concatenate(
+        [np.zeros((1, 121), dtype=int), 1 + np.tile(np.r_[0:120, 0], (39, 1)) + 120 * np.arange(39)[:, None]]
+    )
     triangles = index.ravel()[grid_triangles(40, 121)]
-    triangles = triangles[(triangles[:, 0] != triangles[:, 1]) & (triangles[:, 1] != triangles[:, 2]) & (triangles[:, 2] != triangles[:, 0])]
+    triangles = triangles[
+        (triangles[:, 0] != triangles[:, 1])
+        & (triangles[:, 1] != triangles[:, 2])
+        & (triangles[:, 2] != triangles[:, 0])
+    ]
     mould = KnownMould(merged, triangles)
     status = np.zeros((n, n), dtype=np.uint8)
     fabric = Fabric(spacing, locking_angle=np.radians(30))
-    return KnownNet(mould, fabric, np.array([0, 0, radius]), np.array([1.0, 0, 0]), (half, half), position, status)
+    return KnownNet(
+        mould, fabric, np.array([0, 0, radius]), np.array([1.0, 0, 0]), (half, half), position, status
+    )
 
 
 def wing_net(spacing=50.0, span=14000.0, chord=3000.0, height=1000.0):
     """A sheet over a curved wing cover and down a spar, 14 : 3 : 1, its columns turned at the edge."""
     y = np.arange(0.0, span, spacing)
-    across = np.arange(-height + spacing / 2, chord, spacing)
+    across = np.arange(-height + spacing / 2, chord, spacing)[::-1]  # so that the normal points out
     Y, S = np.meshgrid(y, across, indexing="ij")
     on_spar = S < 0
     turn = np.radians(11.0) * (1 - np.cos(2.0 * np.pi * Y / span)) / 2
@@ -178,10 +197,10 @@ def wing_net(spacing=50.0, span=14000.0, chord=3000.0, height=1000.0):
     profile = [
         np.stack([x + 0 * y, y, z + dz], axis=1) for x, dz in ((0.0, -height), (0.0, 0.0), (chord, 0.0))
     ]
-    mould = KnownMould(np.stack(profile, axis=1).reshape(-1, 3), grid_triangles(60, 3)[:, ::-1])
+    mould = KnownMould(np.stack(profile[::-1], axis=1).reshape(-1, 3), grid_triangles(60, 3))
     status = np.zeros(position.shape[:2], dtype=np.uint8)
     fabric = Fabric(spacing, locking_angle=np.radians(7))
-    seed_index = (len(position) // 2, int(np.searchsorted(across, 0)) + 10)
+    seed_index = (len(position) // 2, int(np.argmin(np.abs(across - 500.0))))
     return KnownNet(mould, fabric, position[seed_index], np.array([0.0, 1, 0]), seed_index, position, status)
 
 

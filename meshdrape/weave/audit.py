@@ -1,0 +1,145 @@
+"""Edges of a finished net measured again by libigl, which shares no code with the drape."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshdrape.geodesic.distance import surface_distance
+from meshdrape.surface import SurfacePoint
+from meshdrape.weave.net import Net
+from meshdrape.weave.status import NodeStatus
+
+WARP, WEFT = 0, 1
+# Ends that had to be moved by more than this share of the spacing to become vertices say nothing of the edge.
+MOVED = 1e-11
+# A shortest distance below the spacing by more than this share is a second route, not round-off.
+SECOND_ROUTE = 1e-9
+
+
+@dataclass(frozen=True)
+class Audit:
+    """What libigl found.
+
+    Attributes
+    ----------
+    n_edges : int
+        Edges measured, the ones apart not counted.
+    max_relative_error : float
+        Largest |distance - spacing| / spacing among them; NaN if none was measured.
+    worst : (family, i, j)
+        That edge: 0 a warp edge (i, j)-(i + 1, j), 1 a weft edge (i, j)-(i, j + 1).
+    n_second_routes : int
+        Edges with a shorter way round a convex vertex, by more than 1e-9 of the spacing.
+    n_through_vertex : int
+        Generator edges in the sample that run through a vertex. A straightest path may be longer than the shortest
+        there, so they are kept apart.
+    max_through_vertex : float
+        Largest relative error among those.
+    n_skipped : int
+        Edges with an end too near to a triangle's side to be measured.
+    n_population : int
+        Edges the net has.
+    seconds : float
+    """
+
+    n_edges: int
+    max_relative_error: float
+    worst: tuple[int, int, int]
+    n_second_routes: int
+    n_through_vertex: int
+    max_through_vertex: float
+    n_skipped: int
+    n_population: int
+    seconds: float
+
+
+def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("inf")) -> Audit:
+    """Measure a random sample of a net's edges with libigl's exact geodesics.
+
+    Parameters
+    ----------
+    net : Net
+    edges : int
+        Size of the sample; all edges if the net has no more.
+    seed : int
+        Of the random choice.
+    seconds : float
+        Stop after this long, with what has been measured.
+    """
+    begun = time.perf_counter()
+    placed = net.node_status <= NodeStatus.OFF_MOULD
+    counts = (np.count_nonzero(placed[:-1] & placed[1:]), np.count_nonzero(placed[:, :-1] & placed[:, 1:]))
+    population = int(sum(counts))
+    worst, worst_edge = float("nan"), (0, 0, 0)
+    measured = second = through = skipped = 0
+    worst_through = 0.0
+    for family, i, j in _sample(placed, population, edges, np.random.default_rng(seed)):
+        if measured + through and time.perf_counter() - begun > seconds:
+            break
+        spacing = net.fabric.warp_spacing if family == WARP else net.fabric.weft_spacing
+        ends = [_point(net, i, j), _point(net, i + (family == WARP), j + (family == WEFT))]
+        distance, moved = surface_distance(net.surface, *ends, bound=spacing * (1 + 1e-6))
+        if moved > MOVED * spacing or not np.isfinite(distance):
+            skipped += 1
+            continue
+        error = abs(distance - spacing) / spacing
+        if _runs_through(net, family, i, j):
+            through += 1
+            worst_through = max(worst_through, error)
+            continue
+        measured += 1
+        second += distance < spacing * (1 - SECOND_ROUTE)
+        if not error <= worst:
+            worst, worst_edge = error, (family, i, j)
+    return Audit(
+        n_edges=measured,
+        max_relative_error=worst,
+        worst=worst_edge,
+        n_second_routes=int(second),
+        n_through_vertex=through,
+        max_through_vertex=worst_through,
+        n_skipped=skipped,
+        n_population=population,
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def _sample(
+    placed: NDArray[np.bool_], population: int, edges: int, rng: np.random.Generator
+) -> list[tuple[int, int, int]]:
+    """Distinct edges (family, i, j), without ever listing all edges of a large net."""
+    if population <= 4 * edges:
+        warp = np.argwhere(placed[:-1] & placed[1:])
+        weft = np.argwhere(placed[:, :-1] & placed[:, 1:])
+        every = [(WARP, int(i), int(j)) for i, j in warp] + [(WEFT, int(i), int(j)) for i, j in weft]
+        return [every[k] for k in rng.permutation(len(every))[:edges]]
+    found: dict[tuple[int, int, int], None] = {}
+    n_warp, n_weft = placed.shape
+    while len(found) < edges:
+        family = int(rng.integers(2))
+        i = int(rng.integers(n_warp - (family == WARP)))
+        j = int(rng.integers(n_weft - (family == WEFT)))
+        if placed[i, j] and placed[i + (family == WARP), j + (family == WEFT)]:
+            found[family, i, j] = None
+    return list(found)
+
+
+def _point(net: Net, i: int, j: int) -> SurfacePoint:
+    x, y = net.lattice.xy[i, j]
+    return SurfacePoint.from_frame(net.surface, int(net.lattice.face[i, j]), float(x), float(y))
+
+
+def _runs_through(net: Net, family: int, i: int, j: int) -> bool:
+    """Whether this is a generator edge with a vertex on it."""
+    i0, j0 = net.seed_index
+    if family == WARP and j == j0:
+        half, order = (0, i - i0) if i >= i0 else (2, i0 - i - 1)
+    elif family == WEFT and i == i0:
+        half, order = (1, j - j0) if j >= j0 else (3, j0 - j - 1)
+    else:
+        return False
+    return bool(net.start.through[half, order])
