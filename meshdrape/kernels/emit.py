@@ -29,48 +29,51 @@ def positions(mesh, net, i_first, out):
                 out[a, j, k] = frame[k] + x * frame[3 + k] + y * frame[6 + k]
 
 
+@njit(cache=True, error_model="numpy")
+def node_tangent(mesh, net, start, family, i, j, spacing):
+    """Unit tangent of a fibre at a node, in the frame of its face: the mean of the edges before and after it.
+
+    (0, 0) where the fibre has no edge at the node.
+    """
+    n_warp, n_weft = net.status.shape
+    if family == WARP:
+        after = i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD
+        before = i > 0 and net.status[i - 1, j] <= OFF_MOULD
+    else:
+        after = j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD
+        before = j > 0 and net.status[i, j - 1] <= OFF_MOULD
+    dx = 0.0
+    dy = 0.0
+    if after:
+        px, py, _, _ = edge_ends(mesh, net, start, family, i, j, 1, spacing)
+        dx += px
+        dy += py
+    if before:
+        px, py, _, _ = edge_ends(mesh, net, start, family, i, j, -1, spacing)
+        dx -= px
+        dy -= py
+    size = math.sqrt(dx * dx + dy * dy)
+    if size == 0.0:
+        return 0.0, 0.0
+    return dx / size, dy / size
+
+
 @njit(cache=True, error_model="numpy", nogil=True)
 def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
-    """Unit tangents (rows, n_weft, 3) at the nodes: the mean of the edges that arrive and leave along each fibre."""
-    n_warp, n_weft = net.status.shape
+    """Unit tangents (rows, n_weft, 3) of the fibres at the nodes of the rows from i_first on; NaN without a node."""
     for a in range(warp_out.shape[0]):
         i = i_first + a
-        for j in range(n_weft):
-            for k in range(3):
-                warp_out[a, j, k] = math.nan
-                weft_out[a, j, k] = math.nan
+        for j in range(net.status.shape[1]):
             if net.status[i, j] > OFF_MOULD:
+                warp_out[a, j, :] = math.nan
+                weft_out[a, j, :] = math.nan
                 continue
             frame = mesh.frame[net.face[i, j]]
-            for family in range(2):
-                dx = 0.0
-                dy = 0.0
-                if family == WARP:
-                    if i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD:
-                        px, py, _, _ = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
-                        dx += px
-                        dy += py
-                    if i > 0 and net.status[i - 1, j] <= OFF_MOULD:
-                        px, py, _, _ = edge_ends(mesh, net, start, WARP, i, j, -1, warp)
-                        dx -= px
-                        dy -= py
-                else:
-                    if j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD:
-                        px, py, _, _ = edge_ends(mesh, net, start, WEFT, i, j, 1, weft)
-                        dx += px
-                        dy += py
-                    if j > 0 and net.status[i, j - 1] <= OFF_MOULD:
-                        px, py, _, _ = edge_ends(mesh, net, start, WEFT, i, j, -1, weft)
-                        dx -= px
-                        dy -= py
-                size = math.sqrt(dx * dx + dy * dy)
-                if size > 0.0:
-                    for k in range(3):
-                        v = (dx * frame[3 + k] + dy * frame[6 + k]) / size
-                        if family == WARP:
-                            warp_out[a, j, k] = v
-                        else:
-                            weft_out[a, j, k] = v
+            px, py = node_tangent(mesh, net, start, WARP, i, j, warp)
+            qx, qy = node_tangent(mesh, net, start, WEFT, i, j, weft)
+            for k in range(3):
+                warp_out[a, j, k] = px * frame[3 + k] + py * frame[6 + k]
+                weft_out[a, j, k] = qx * frame[3 + k] + qy * frame[6 + k]
 
 
 @njit(cache=True, error_model="numpy")

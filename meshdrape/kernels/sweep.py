@@ -116,8 +116,8 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
     closes their cell. Nodes that have a place keep it. Each place depends on parents alone, so tiles may run in any
     order, on any thread, that places parents first.
 
-    The sheet beyond the mould hangs free: where one parent was lost off the mould and the other lies on the mould,
-    the fibre goes straight on, as a fibre does that nothing crosses.
+    The sheet beyond the mould hangs free: where one parent was lost off the mould and the other lies on the mould, or
+    on the hem beside it, the fibre goes straight on, as a fibre does that nothing crosses.
 
     Parameters
     ----------
@@ -280,6 +280,19 @@ def _half_fibre(si, sj):
 
 
 @njit(cache=True, error_model="numpy")
+def _near_mould(status, i, j, back_i, back_j):
+    """Whether the fibre left the mould no more than two nodes before (i, j)."""
+    for _ in range(3):
+        if i < 0 or j < 0 or i >= status.shape[0] or j >= status.shape[1] or status[i, j] > OFF_MOULD:
+            return False
+        if status[i, j] == PLACED:
+            return True
+        i += back_i
+        j += back_j
+    return False
+
+
+@njit(cache=True, error_model="numpy")
 def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report):
     """Status of a node that lacks a parent, placed straight on from the other one where the sheet hangs free."""
     status = net.status
@@ -287,7 +300,7 @@ def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, re
     jb = j - sj
     side = float(si * sj)
     half = _half_fibre(si, sj)
-    if has_a and status[ia, j] == PLACED and status[i, jb] == OUTSIDE:
+    if has_a and status[i, jb] == OUTSIDE and _near_mould(status, ia, j, -si, 0):
         if ia != start.index[0]:
             if status[ia - si, j] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WARP, ia - si, j, si, warp)
@@ -300,7 +313,7 @@ def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, re
             return _step(
                 mesh, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report
             )
-    if has_b and status[i, jb] == PLACED and status[ia, j] == OUTSIDE:
+    if has_b and status[ia, j] == OUTSIDE and _near_mould(status, i, jb, 0, -sj):
         if jb != start.index[1]:
             if status[i, jb - sj] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WEFT, i, jb - sj, sj, weft)

@@ -1,15 +1,16 @@
-"""Triangles of CAD faces: outlines cut into triangles, then diagonals turned and edges split.
+"""Triangles of CAD faces in their own parameters: diagonals turned and edges split until they follow the face.
 
-Works on plain arrays; what a CAD face looks like comes in through :class:`Patches` and a function that
-evaluates it. The measure throughout is the distance in the joint space of positions and normals,
+Works on plain arrays; how a CAD face looks comes in through a function that evaluates it. The measure
+throughout is the face's own metric
 
-    q = (position / length, normal / angle),
+    M = I / length^2 + III / angle^2,
 
-one scale pair for each face: two nodes are one unit apart where the normal turns by ``angle``. A Delaunay
-triangulation in that space runs its long edges along the rulings of a developable face, where the normal does
-not turn, and spreads the nodes of a doubly curved face evenly over its Gauss image. That is what a net asks of
-a mesh: a vertex carries the curvature of its neighbourhood as angle defect and shears every cell beyond it by
-as much, so no vertex should carry more than another.
+the first fundamental form and the third, that of the normals: two nodes are a unit apart where the normal
+turns by ``angle`` between them. A triangulation that is Delaunay in this metric runs its long edges along the
+rulings of a developable face, where the normal does not turn, and spreads the nodes of a doubly curved face
+evenly over its Gauss image. That is what a net asks of a mesh: a vertex carries the curvature of its
+neighbourhood as angle defect and shears every cell beyond it by as much, so none should carry more than
+another, however long and thin the face.
 """
 
 from __future__ import annotations
@@ -22,140 +23,195 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Evaluate = Callable[[Ints, Floats], tuple[Floats, Floats]]
 
-FLIP_GAIN = 1e-6  # radians of opposite angle a flip must gain, so that round-off cannot flip to and fro
-THINNEST = 1e-6  # smallest share a new triangle may have of its quadrilateral, in (u, v)
-MAX_FLIP_ROUNDS = 200
+FLIP_GAIN = 1e-6  # rad of opposite angle a flip must gain, so that round-off cannot turn it to and fro
+THINNEST = 1e-6  # smallest share a triangle may have of its quadrilateral in (u, v): less is a collinear corner
+MAX_ROUNDS = 500
 
 
 @dataclass
-class Patches:
-    """Triangulated CAD faces in their own parameters, one mesh component for each face.
-
-    A node belongs to one patch: a CAD edge between two patches, or a seam within one, has its nodes once for
-    each side, and ``node_id`` says which are the same point.
+class Nodes:
+    """Nodes of triangulated CAD faces; a node belongs to one face and one side of a seam.
 
     Attributes
     ----------
+    face : (k,) int
+        Index of the CAD face.
     uv : (k, 2) float
-        Parameters, scaled so that both are roughly lengths.
+        Parameters on the face, scaled so that both are roughly millimetres.
     position, normal : (k, 3) float
-        Point in mm and unit normal.
-    node_patch : (k,) int
-    triangles : (t, 3) int
-        Counter-clockwise in (u, v).
-    length, angle : (n_patches,) float
-        Scales of the joint space of positions and normals, mm and rad.
+        Point in mm, unit normal.
+    metric : (k, 3) float
+        M_uu, M_uv, M_vv.
     """
 
+    face: Ints
     uv: Floats
     position: Floats
     normal: Floats
-    node_patch: Ints
-    triangles: Ints
-    length: Floats
-    angle: Floats
+    metric: Floats
+    tangent: Floats
 
-    @property
-    def joint(self) -> Floats:
-        """Coordinates in the joint space of positions and normals, shape (k, 6)."""
-        return np.hstack(
-            [self.position / self.length[self.node_patch, None], self.normal / self.angle[self.node_patch, None]]
+    def take(self, index: Ints) -> Nodes:
+        return Nodes(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
+
+    def append(self, other: Nodes) -> None:
+        for name in self.__dataclass_fields__:
+            setattr(self, name, np.concatenate([getattr(self, name), getattr(other, name)]))
+
+
+Evaluate = Callable[[Ints, Floats], Nodes]
+
+
+class Facets:
+    """A triangulation that can turn its diagonals and split its edges.
+
+    Half-edge ``3 t + k`` runs from corner k to corner k + 1 of triangle t, counter-clockwise in (u, v);
+    ``twin`` is the half-edge on its other side, -1 on the outline of a face.
+    """
+
+    def __init__(self, nodes: Nodes, triangles: Ints) -> None:
+        self.nodes = nodes
+        self.triangles = np.array(triangles, dtype=np.int64)
+        self.twin = _twins(self.triangles, len(nodes.uv))
+
+    def flip_to_delaunay(self, touched: Ints | None = None) -> None:
+        """Turn diagonals until every inner edge is Delaunay in the metric, as far as (u, v) allows.
+
+        A round turns diagonals no two of which share a triangle, the most profitable first.
+        """
+        if touched is None:
+            touched = np.arange(len(self.triangles))
+        for _ in range(MAX_ROUNDS):
+            edge = self._inner_edges(touched)
+            a, b, c, d = self._quad(edge)
+            gain = self._gain(a, b, c, d)
+            wanted = (gain > FLIP_GAIN) & self._convex(a, b, c, d)
+            edge, gain = edge[wanted], gain[wanted]
+            edge = edge[self._independent(edge, gain)]
+            if not len(edge):
+                return
+            touched = self._flip(edge)
+
+    def split_long_edges(self, limit: Callable[[Facets, Ints], Floats], evaluate: Evaluate, most: int) -> None:
+        rng = np.random.default_rng(0)
+        for _ in range(MAX_ROUNDS):
+            edge = self._inner_edges(np.arange(len(self.triangles)))
+            size = limit(self, edge)
+            wanted = size > 1
+            edge, size = edge[wanted], size[wanted]
+            # classes of a quarter, in random order within one: else a smooth size field lets only its peaks split
+            rank = np.floor(np.log(size) / np.log(1.25)) + rng.random(len(size))
+            edge = edge[self._independent(edge, rank)]
+            if not len(edge):
+                return
+            a, b, _, _ = self._quad(edge)
+            self.flip_to_delaunay(self._split(edge, evaluate(self.nodes.face[a], (self.nodes.uv[a] + self.nodes.uv[b]) / 2)))
+
+    def _inner_edges(self, triangles: Ints) -> Ints:
+        """One half-edge, the lower, of every inner edge of the triangles."""
+        half = (3 * triangles[:, None] + np.arange(3)).ravel()
+        twin = self.twin[half]
+        return np.unique(np.minimum(half, twin)[twin >= 0])
+
+    def _quad(self, edge: Ints) -> tuple[Ints, Ints, Ints, Ints]:
+        """Ends a, b of the edges, the corner c on their left and d on their right."""
+        corner = self.triangles.ravel()
+        twin = self.twin[edge]
+        return corner[edge], corner[_next(edge)], corner[_next(_next(edge))], corner[_next(_next(twin))]
+
+    def _gain(self, a: Ints, b: Ints, c: Ints, d: Ints) -> Floats:
+        """Sum of the angles over the edge a-b less the sum over c-d, in the mean metric of the four, rad."""
+        uv, metric = self.nodes.uv, self.nodes.metric
+        m = metric[a] + metric[b] + metric[c] + metric[d]
+        ca, cb, da, db = uv[a] - uv[c], uv[b] - uv[c], uv[a] - uv[d], uv[b] - uv[d]
+        root = np.sqrt(np.maximum(m[:, 0] * m[:, 2] - m[:, 1] ** 2, 0.0))
+        return (
+            _angle(m, root, ca, cb) + _angle(m, root, db, da) - _angle(m, root, -da, -ca) - _angle(m, root, -cb, -db)
         )
 
+    def _convex(self, a: Ints, b: Ints, c: Ints, d: Ints) -> NDArray[np.bool_]:
+        uv = self.nodes.uv
+        one, two = _cross(uv[d] - uv[a], uv[c] - uv[a]), _cross(uv[c] - uv[b], uv[d] - uv[b])
+        return np.minimum(one, two) > THINNEST * (one + two)
 
-def inner_edges(triangles: Ints, n_nodes: int) -> tuple[Ints, Ints]:
-    """Both half-edges of every edge with a triangle on each side, shapes (e,), (e,).
+    def _independent(self, edge: Ints, value: Floats) -> NDArray[np.bool_]:
+        """Edges that hold the highest value of both their triangles: no two of them share a triangle."""
+        rank = np.empty(len(edge), dtype=np.int64)
+        rank[np.argsort(value, kind="stable")] = np.arange(len(edge))
+        left, right = edge // 3, self.twin[edge] // 3
+        best = np.full(len(self.triangles), -1, dtype=np.int64)
+        np.maximum.at(best, left, rank)
+        np.maximum.at(best, right, rank)
+        return (best[left] == rank) & (best[right] == rank)
 
-    Half-edge ``3 * t + k`` runs from corner k to corner k + 1 of triangle t.
-    """
+    def _flip(self, edge: Ints) -> Ints:
+        """Turn the diagonals a-b into c-d; returns the triangles touched."""
+        a, b, c, d = self._quad(edge)
+        twin = self.twin[edge]
+        left, right = edge // 3, twin // 3
+        outer = np.concatenate([_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))])  # bc, ca, ad, db
+        moved = np.concatenate([3 * right + 1, 3 * left + 2, 3 * left, 3 * right])
+        # left becomes a, d, c and right becomes b, c, d
+        moved = np.concatenate([3 * right, 3 * left + 2, 3 * left, 3 * right + 2])
+        self.triangles[left] = np.column_stack([a, d, c])
+        self.triangles[right] = np.column_stack([b, c, d])
+        self._rejoin(outer, moved)
+        self.twin[3 * left + 1], self.twin[3 * right + 1] = 3 * right + 1, 3 * left + 1
+        return np.concatenate([left, right])
+
+    def _split(self, edge: Ints, middle: Nodes) -> Ints:
+        """Put a node on the edges a-b; returns the triangles touched."""
+        a, b, c, d = self._quad(edge)
+        twin = self.twin[edge]
+        left, right = edge // 3, twin // 3
+        m = len(self.nodes.uv) + np.arange(len(edge))
+        first = len(self.triangles)
+        left_b, right_b = first + np.arange(len(edge)), first + len(edge) + np.arange(len(edge))
+        outer = np.concatenate([_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))])  # bc, ca, ad, db
+        # left = a m c, left_b = m b c, right = m a d, right_b = b m d
+        moved = np.concatenate([3 * left_b + 1, 3 * left + 2, 3 * right + 1, 3 * right_b + 2])
+        self.nodes.append(middle)
+        self.triangles[left] = np.column_stack([a, m, c])
+        self.triangles[right] = np.column_stack([m, a, d])
+        self.triangles = np.vstack([self.triangles, np.column_stack([m, b, c]), np.column_stack([b, m, d])])
+        self.twin = np.concatenate([self.twin, np.full(6 * len(edge), -1, dtype=np.int64)])
+        self._rejoin(outer, moved)
+        for one, two in ((3 * left, 3 * right), (3 * left_b, 3 * right_b), (3 * left + 1, 3 * left_b + 2), (3 * right + 2, 3 * right_b + 1)):
+            self.twin[one], self.twin[two] = two, one
+        return np.concatenate([left, right, left_b, right_b])
+
+    def _rejoin(self, old: Ints, new: Ints) -> None:
+        """Half-edges ``old`` are now called ``new``: carry their twins over, which may be moving themselves."""
+        name = np.arange(len(self.twin))
+        name[old] = new
+        partner = self.twin[old]
+        inner = partner >= 0
+        self.twin[new[~inner]] = -1
+        new, partner = new[inner], name[partner[inner]]
+        self.twin[new] = partner
+        self.twin[partner] = new
+
+
+def _twins(triangles: Ints, n_nodes: int) -> Ints:
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     key = np.minimum(start, end) * n_nodes + np.maximum(start, end)
     order = np.argsort(key, kind="stable")
-    twin = np.flatnonzero(key[order][1:] == key[order][:-1])
-    return order[twin], order[twin + 1]
+    same = np.flatnonzero(key[order][1:] == key[order][:-1])
+    twin = np.full(len(key), -1, dtype=np.int64)
+    twin[order[same]], twin[order[same + 1]] = order[same + 1], order[same]
+    return twin
 
 
-def flip_to_delaunay(patches: Patches) -> None:
-    """Turn diagonals until every inner edge is Delaunay in the joint space, as far as (u, v) allows.
-
-    A round turns a set of diagonals that share no triangle, the most profitable first.
-    """
-    joint, uv = patches.joint, patches.uv
-    triangles = patches.triangles
-    for _ in range(MAX_FLIP_ROUNDS):
-        one, two = inner_edges(triangles, len(uv))
-        a, b, c, d = _quad(triangles, one, two)
-        gain = _opposite(joint, a, b, c) + _opposite(joint, a, b, d) - _opposite(joint, c, d, a) - _opposite(joint, c, d, b)
-        wanted = np.flatnonzero(gain > FLIP_GAIN)
-        a, b, c, d = a[wanted], b[wanted], c[wanted], d[wanted]
-        upper, lower = _area(uv, a, d, c), _area(uv, d, b, c)
-        convex = np.minimum(upper, lower) > THINNEST * (upper + lower)
-        wanted = wanted[convex]
-        chosen = wanted[_independent(gain[wanted], one[wanted] // 3, two[wanted] // 3, len(triangles))]
-        if not len(chosen):
-            return
-        a, b, c, d = _quad(triangles, one[chosen], two[chosen])
-        triangles[one[chosen] // 3] = np.column_stack([a, d, c])
-        triangles[two[chosen] // 3] = np.column_stack([d, b, c])
+def _next(half: Ints) -> Ints:
+    return half - half % 3 + (half + 1) % 3
 
 
-def split_long_edges(patches: Patches, evaluate: Evaluate, chord: float, curved: NDArray[np.bool_], limit: int) -> None:
-    for _ in range(100):
-        joint = patches.joint
-        one, two = inner_edges(patches.triangles, len(patches.uv))
-        a, b, c, d = _quad(patches.triangles, one, two)
-        mine = curved[patches.node_patch[a]]
-        size = np.linalg.norm(joint[a] - joint[b], axis=1)
-        turn = np.linalg.norm(patches.normal[a] - patches.normal[b], axis=1)
-        span = np.linalg.norm(patches.position[a] - patches.position[b], axis=1)
-        size = np.maximum(size, np.sqrt(span * turn / 8 / chord)) * mine
-        wanted = np.flatnonzero(size > 1)
-        chosen = wanted[_independent(size[wanted], one[wanted] // 3, two[wanted] // 3, len(patches.triangles))]
-        if not len(chosen):
-            return
-        a, b, c, d = a[chosen], b[chosen], c[chosen], d[chosen]
-        middle = (patches.uv[a] + patches.uv[b]) / 2
-        patch = patches.node_patch[a]
-        position, normal = evaluate(patch, middle)
-        m = len(patches.uv) + np.arange(len(chosen))
-        patches.uv = np.vstack([patches.uv, middle])
-        patches.position = np.vstack([patches.position, position])
-        patches.normal = np.vstack([patches.normal, normal])
-        patches.node_patch = np.concatenate([patches.node_patch, patch])
-        t = patches.triangles
-        t[one[chosen] // 3] = np.column_stack([a, m, c])
-        t[two[chosen] // 3] = np.column_stack([b, m, d])
-        patches.triangles = np.vstack([t, np.column_stack([m, b, c]), np.column_stack([m, a, d])])
-        flip_to_delaunay(patches)
+def _cross(a: Floats, b: Floats) -> Floats:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-def _quad(triangles: Ints, one: Ints, two: Ints) -> tuple[Ints, Ints, Ints, Ints]:
-    """Edge a-b as half-edge ``one`` runs, the corner c left of it and the corner d right of it."""
-    flat = triangles.ravel()
-    after_one = one - one % 3 + (one + 1) % 3
-    return (flat[one], flat[after_one], flat[one - one % 3 + (one + 2) % 3], flat[two - two % 3 + (two + 2) % 3])
-
-
-def _opposite(joint: Floats, a: Ints, b: Ints, c: Ints) -> Floats:
-    """Angle at c over the edge a-b, rad; a right angle where c falls on an end of it."""
-    to_a, to_b = joint[a] - joint[c], joint[b] - joint[c]
-    dot = np.einsum("ij,ij->i", to_a, to_b)
-    square = np.einsum("ij,ij->i", to_a, to_a) * np.einsum("ij,ij->i", to_b, to_b)
-    return np.arctan2(np.sqrt(np.maximum(square - dot * dot, 0.0)), dot)
-
-
-def _area(uv: Floats, a: Ints, b: Ints, c: Ints) -> Floats:
-    ab, ac = uv[b] - uv[a], uv[c] - uv[a]
-    return (ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]) / 2
-
-
-def _independent(value: Floats, left: Ints, right: Ints, n_triangles: int) -> NDArray[np.bool_]:
-    """Edges that hold the highest value of both their triangles: no two of them share a triangle."""
-    rank = np.empty(len(value), dtype=np.int64)
-    rank[np.argsort(value, kind="stable")] = np.arange(len(value))
-    best = np.full(n_triangles, -1, dtype=np.int64)
-    np.maximum.at(best, left, rank)
-    np.maximum.at(best, right, rank)
-    return (best[left] == rank) & (best[right] == rank)
+def _angle(m: Floats, root: Floats, a: Floats, b: Floats) -> Floats:
+    """Angle from a to b in the metric, rad, within (-pi, pi]."""
+    dot = m[:, 0] * a[:, 0] * b[:, 0] + m[:, 1] * (a[:, 0] * b[:, 1] + a[:, 1] * b[:, 0]) + m[:, 2] * a[:, 1] * b[:, 1]
+    return np.arctan2(root * _cross(a, b), dot)

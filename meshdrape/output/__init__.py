@@ -1,1 +1,23 @@
-"""."""
+"""What leaves the package: PLY files for MeshLab, a picture, a summary for machines.
+
+Importing this imports neither VTK nor any other library of drawing.
+"""
+
+from meshdrape.output.fibres_ply import write_fibres_ply
+from meshdrape.output.files import atomic_write
+from meshdrape.output.mould_ply import write_mould_ply
+from meshdrape.output.net_ply import StoredNet, read_net, write_ply
+from meshdrape.output.picture import draw_net
+from meshdrape.output.summary import json_text, write_json
+
+__all__ = [
+    "StoredNet",
+    "atomic_write",
+    "draw_net",
+    "json_text",
+    "read_net",
+    "write_fibres_ply",
+    "write_json",
+    "write_mould_ply",
+    "write_ply",
+]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape import __version__
 from meshdrape.output.colour import WARP, WEFT
 from meshdrape.output.columns import COLOUR, POSITION, fill
 from meshdrape.output.comments import to_comments
@@ -51,7 +51,7 @@ def write_fibres_ply(net: Net, path: str | os.PathLike[str], every: int | None =
     families = [_Family(j, warp_fibres(net, j), WARP), _Family(i, weft_fibres(net, i), WEFT)]
     nodes = Element("vertex", sum(int(family.there.sum()) for family in families), NODE)
     segments = Element("edge", sum(int(family.joined.sum()) for family in families), SEGMENT)
-    made = {"meshdrape": version("meshdrape"), "unit": "mm", "every": every}
+    made = {"meshdrape": __version__, "unit": "mm", "every": every}
     with ply_writer(path, [nodes, segments], to_comments(made)) as ply:
         for family, across, along in zip(families, ("j", "i"), ("i", "j"), strict=True):
             rows = nodes.rows(int(family.there.sum()))

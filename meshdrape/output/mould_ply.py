@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from meshdrape import __version__
 from meshdrape.output.columns import POSITION, SHEAR_FIELDS, fill, fill_shear
 from meshdrape.output.comments import to_comments
 from meshdrape.output.ply import Element, ply_writer
@@ -25,8 +25,8 @@ def write_mould_ply(field: MouldField, path: str | os.PathLike[str], locking_ang
     """Write the triangles of a mould with fibre angles and shear, as binary little-endian PLY for MeshLab.
 
     Each face has a colour, `quality` (absolute shear, deg), `shear_deg` (signed), `warp_angle_deg` and
-    `weft_angle_deg`, the angles from the field's reference axis. Where there is no cloth the face is grey,
-    its `quality` is 0 and the other three are NaN.
+    `weft_angle_deg`, the angles from the reference axis, which a comment names. Where there is no cloth the
+    face is grey, its `quality` is 0 and the other three are NaN.
 
     Parameters
     ----------
@@ -46,10 +46,15 @@ def write_mould_ply(field: MouldField, path: str | os.PathLike[str], locking_ang
     fill(points, POSITION, field.vertices)
     faces = triangles.rows(triangles.count)
     faces["vertex_indices"] = field.triangles
-    fill_shear(faces, np.where(field.covered, field.shear, np.nan), locking_angle)
-    faces["warp_angle_deg"] = np.degrees(np.where(field.covered, field.warp_angle, np.nan))
-    faces["weft_angle_deg"] = np.degrees(np.where(field.covered, field.weft_angle, np.nan))
-    made = {"meshdrape": version("meshdrape"), "unit": "mm", "locking_angle_rad": locking_angle}
+    fill_shear(faces, field.shear, locking_angle)
+    faces["warp_angle_deg"] = np.degrees(field.warp_angle)
+    faces["weft_angle_deg"] = np.degrees(field.weft_angle)
+    made = {
+        "meshdrape": __version__,
+        "unit": "mm",
+        "locking_angle_rad": locking_angle,
+        "reference": np.asarray(field.reference).tolist(),
+    }
     with ply_writer(path, [vertices, triangles], to_comments(made)) as ply:
         ply.write("vertex", points)
         ply.write("face", faces)

@@ -9,13 +9,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape import __version__
 from meshdrape.errors import NetError
 from meshdrape.output.columns import COLOUR, POSITION, SHEAR_FIELDS, fill, fill_shear
 from meshdrape.output.comments import from_comments, to_comments
@@ -240,7 +240,7 @@ def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
         # told from the net's file, so that the two can move together
         source = Path(os.path.relpath(mould.source, Path(path).parent)).as_posix()
     return {
-        "meshdrape": version("meshdrape"),
+        "meshdrape": __version__,
         "unit": "mm",
         "spacing": [fabric.warp_spacing, fabric.weft_spacing],
         "initial_angle_rad": fabric.initial_angle,
@@ -262,6 +262,10 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     made = from_comments(ply.comments)
     n_warp, n_weft = made["nodes"]
     node, cell, gap = (ply.elements[name] for name in ("vertex", "face", "gap"))
+    n_gaps = int(gap["length"].sum())
+    if n_warp * n_weft != len(node) + n_gaps:
+        msg = f"its {len(node):,} nodes and {n_gaps:,} gaps do not fill {n_warp} x {n_weft}"
+        raise ValueError(msg)
     status = np.full((n_warp, n_weft), NodeStatus.NOT_REACHED, dtype=np.uint8)
     arrays = [np.full((n_warp, n_weft, 3), np.nan) for _ in range(3)]
     for start in range(0, len(node), _NODES_PER_BLOCK):
@@ -274,9 +278,8 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     flat = status.ravel()
     for i, j, length, value in gap[["i", "j", "length", "status"]].tolist():
         flat[i * n_weft + j : i * n_weft + j + length] = value
-    n_gaps = int(gap["length"].sum())
-    if len(node) + n_gaps != status.size or int((status <= NodeStatus.OFF_MOULD).sum()) != len(node):
-        msg = f"its {len(node):,} nodes and {n_gaps:,} gaps do not fill {n_warp} x {n_weft}"
+    if int((status <= NodeStatus.OFF_MOULD).sum()) != len(node):
+        msg = "some of its nodes share a place"
         raise ValueError(msg)
     shear = np.full((n_warp - 1, n_weft - 1), np.nan)
     for start in range(0, len(cell), _NODES_PER_BLOCK):

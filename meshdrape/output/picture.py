@@ -42,8 +42,8 @@ def draw_net(net: Net, measures: Measures, path: str | os.PathLike[str]) -> None
 
     Cells have the colour of their shear on a scale anchored at the locking angle. Some fibres of both
     families are drawn, the seed with the two directions, the place of the largest shear, a legend and a scale
-    bar. The view is chosen from the shape; it is a parallel projection, so that the scale bar holds everywhere.
-    Of more than 300,000 cells whole blocks are drawn, each in the colour of its largest shear.
+    bar. The view is chosen from the shape; it is a parallel projection, so the scale bar holds everywhere. Of
+    more than 300,000 cells whole blocks are drawn, each in the colour of its largest shear.
 
     Parameters
     ----------
@@ -110,9 +110,8 @@ def _add_mould(stage: Stage, mould: Mould, back: float) -> None:
     surface = mould.surface
     corners = surface.vertices[surface.faces]
     normal = surface.face_normal
-    at_vertex = np.zeros_like(surface.vertices)
-    for k in range(3):
-        np.add.at(at_vertex, surface.faces[:, k], normal * surface.face_area[:, None])
+    weighted = (normal * surface.face_area[:, None]).repeat(3, axis=0)
+    at_vertex = np.stack([np.bincount(surface.faces.ravel(), weighted[:, axis]) for axis in range(3)], axis=1)
     at_vertex = at_vertex / np.maximum(np.linalg.norm(at_vertex, axis=1)[:, None], 1e-300)
     smooth = at_vertex[surface.faces]
     is_sharp = np.einsum("mkd,md->mk", smooth, normal) < _CREASE
@@ -143,8 +142,8 @@ def _mark_seed(stage: Stage, net: Net, view: View) -> None:
         _arrow(stage, seed, tip, colour)
         away = (tip - seed) / max(float(np.linalg.norm(tip - seed)), 1e-9)
         stage.add_text(name, tip + 34 * away, 25, colour, align="centre", bold=True, plate=True)
-    for radius, width, colour in ((6.0, 12.0, _WHITE), (11.0, 4.0, INK)):
-        stage.add_ring(seed, radius, colour, width)
+    stage.add_ring(seed, 6.0, _WHITE, 12.0)
+    stage.add_ring(seed, 11.0, INK, 4.0)
 
 
 def _arrow(stage: Stage, start: FloatArray, tip: FloatArray, colour: Colour) -> None:
@@ -167,8 +166,8 @@ def _mark_largest_shear(stage: Stage, net: Net, measures: Measures, view: View) 
     if not np.isfinite(measures.max_shear):
         return
     place = view.pixels(measures.max_shear_position)
-    for colour, width in ((_WHITE, 9.0), (INK, 4.0)):
-        stage.add_ring(place, 20.0, colour, width)
+    stage.add_ring(place, 20.0, _WHITE, 9.0)
+    stage.add_ring(place, 20.0, INK, 4.0)
     is_right = bool(place[0] >= view.pixels(net.seed)[0])
     if not _LABEL_ROOM < place[0] < _WIDTH - _LABEL_ROOM:
         is_right = bool(place[0] < 0.5 * _WIDTH)

@@ -20,8 +20,8 @@ Colour = Sequence[int]  # red, green, blue in 0..255, and opacity where it is no
 
 _SAMPLES: Final = 8  # per pixel
 _LIGHT_FROM: Final = (-0.4, 0.5, 1.0)  # right, up, towards the eye
-_AMBIENT: Final = 0.62  # shading is gentle, so that colours can be compared with the legend
-_DIFFUSE: Final = 0.4
+_AMBIENT: Final = 0.7  # shading is gentle, so that colours can be compared with the legend
+_DIFFUSE: Final = 0.32
 
 
 class Stage:
@@ -194,7 +194,7 @@ class Stage:
         return bytes(memoryview(writer.GetResult()))
 
     def _poly_data(self, points: FloatArray, back: float) -> Any:
-        """Return points (n, 3), mm, moved away from the eye; told from the view's centre, float is exact enough."""
+        """Return points (n, 3), mm, moved away from the eye; as float, so told from the view's centre."""
         from vtkmodules.vtkCommonCore import vtkPoints
         from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -254,7 +254,7 @@ def _window() -> Any:
     """Return a window of VTK that draws in memory."""
     try:
         from vtkmodules import vtkRenderingFreeType, vtkRenderingOpenGL2
-        from vtkmodules.vtkCommonCore import vtkObject
+        from vtkmodules.vtkCommonCore import vtkLogger
         from vtkmodules.vtkRenderingCore import vtkRenderWindow
     except ImportError as error:
         from meshdrape.errors import missing_library
@@ -263,12 +263,12 @@ def _window() -> Any:
     del vtkRenderingFreeType  # imported to register the renderer of texts
     # elsewhere than on Linux the platform's own window draws in memory too
     kind = getattr(vtkRenderingOpenGL2, "vtkEGLRenderWindow", vtkRenderWindow)
-    warned = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.SetGlobalWarningDisplay(0)
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     window = kind()
     window.SetOffScreenRendering(True)
     window.Initialize()
-    vtkObject.SetGlobalWarningDisplay(warned)
+    vtkLogger.SetStderrVerbosity(verbosity)
     # asked here, as VTK goes on without OpenGL and ends in a segmentation fault
     if not window.GetInitialized():
         msg = "no OpenGL that draws without a screen; apt install libegl1 libgl1-mesa-dri"

@@ -20,6 +20,8 @@ IntArray = NDArray[np.int64]
 FAN_FROM = np.radians(100.0)
 # Planes closer than this to parallel, rad, have no intersection that means anything.
 ONE_PLANE = 1e-6
+# From here on, rad, two planes meet in a crease, which always goes on past the border.
+CREASE = np.radians(5.0)
 # Two planes meet along a ruling only if it leaves both borders at more than about 20 degrees.
 RULING_LEAVES = 0.35
 # An outer edge keeps at least this share of its border edge, else the extension of a hollow border would fold over.
@@ -71,22 +73,27 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
     ruling *= np.where(np.einsum("ij,ij->i", ruling, before + outward) < 0, -1.0, 1.0)[:, None]
     leaves = np.minimum(np.einsum("ij,ij->i", ruling, before), np.einsum("ij,ij->i", ruling, outward))
     ruled = (angle > ONE_PLANE) & (leaves > RULING_LEAVES)
-    fan = (turn > FAN_FROM) & ~ruled
-
     # one outer vertex a border vertex, as far out as both strips are deep
     middle = before + outward
     size = np.linalg.norm(middle, axis=1)
     mitre = np.where((size > 0.5)[:, None], middle / np.maximum(size, 0.5)[:, None], outward)
-    mitre = np.where(ruled[:, None], ruling, mitre)
-    reach = depth / np.clip(np.where(ruled, leaves, size / 2), RULING_LEAVES, 1.0)
-    for _ in range(60):
-        start = np.where(fan[:, None], depth * outward, reach[:, None] * mitre)
-        end = np.roll(np.where(fan[:, None], depth * before, reach[:, None] * mitre), -1, axis=0)
+    shrink = np.ones(len(loop))
+    for _ in range(80):
+        fan = (turn > FAN_FROM) & ~ruled
+        ray = np.where(ruled[:, None], ruling, mitre)
+        reach = shrink * depth / np.clip(np.where(ruled, leaves, size / 2), RULING_LEAVES, 1.0)
+        start = np.where(fan[:, None], depth * outward, reach[:, None] * ray)
+        end = np.roll(np.where(fan[:, None], depth * before, reach[:, None] * ray), -1, axis=0)
         outer = length + np.einsum("ij,ij->i", end - start, along)
         folded = outer < OUTER_EDGE_SHARE * length
         if not folded.any():
             break
-        reach[folded | np.roll(folded, 1)] *= 0.8
+        touched = folded | np.roll(folded, 1)
+        # planes of a doubly curved border meet at random: there a mitre is the better guess
+        stray = touched & ruled & (angle < CREASE)
+        ruled &= ~stray
+        if not stray.any():
+            shrink[touched] *= 0.8
 
     new_vertices: list[FloatArray] = []
     new_faces: list[tuple[int, int, int]] = []
@@ -96,7 +103,7 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         at = surface.vertices[vertex]
         n = first + len(new_vertices)
         if not fan[i]:
-            new_vertices.append(at + reach[i] * mitre[i])
+            new_vertices.append(at + reach[i] * ray[i])
             leaving[i] = arriving[i] = n
             continue
         spread = _fan(before[i], outward[i], along[i - 1], turn[i])

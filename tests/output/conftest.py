@@ -140,7 +140,7 @@ def flat_net(n_warp=30, n_weft=20, spacing=(2.0, 3.0), shear_deg=5.0, hole=True)
     return KnownNet(mould, fabric, position[seed_index], np.array([1.0, 0, 0]), seed_index, position, status)
 
 
-def sphere_net(half=20, spacing=40.0, radius=1000.0):
+def sphere_net(half=24, spacing=40.0, radius=1000.0):
     """The net on a sphere from two great circles, exact: each node at two chords from its parents."""
     chord = 2 * radius * np.sin(spacing / (2 * radius))
     n = 2 * half + 1
@@ -154,7 +154,7 @@ def sphere_net(half=20, spacing=40.0, radius=1000.0):
             for i in range(1, half + 1):
                 for j in range(1, half + 1):
                     a = position[half + si * (i - 1), half + sj * j]
-                    b = position[half + si * j * 0 + si * i, half + sj * (j - 1)]
+                    b = position[half + si * i, half + sj * (j - 1)]
                     along = product / (radius**2 + a @ b) * (a + b)
                     across = np.cross(a, b)
                     across *= np.sqrt(max(radius**2 - along @ along, 0.0) / (across @ across))
@@ -204,16 +204,59 @@ def wing_net(spacing=50.0, span=14000.0, chord=3000.0, height=1000.0):
     return KnownNet(mould, fabric, position[seed_index], np.array([0.0, 1, 0]), seed_index, position, status)
 
 
+@dataclass(frozen=True, eq=False)
+class KnownField:
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    warp_angle: NDArray[np.float64]
+    weft_angle: NDArray[np.float64]
+    shear: NDArray[np.float64]
+    covered: NDArray[np.bool_]
+    reference: NDArray[np.float64]
+
+
 @pytest.fixture(scope="session")
 def flat():
-    return flat_net()
+    """Sheared 5 degrees everywhere, with nodes missing for several reasons."""
+    net = flat_net()
+    return net, measured(net)
 
 
 @pytest.fixture(scope="session")
 def sphere():
-    return sphere_net()
+    net = sphere_net()
+    return net, measured(net)
 
 
 @pytest.fixture(scope="session")
 def wing():
-    return wing_net()
+    net = wing_net()
+    return net, measured(net)
+
+
+@pytest.fixture(scope="session")
+def field():
+    """Four triangles round the origin, the last without cloth."""
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0.5], [0, 1, 0], [-1, 0, 0.5], [0, -1, 1 / 3]])
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]])
+    warp = np.radians([10.0, -20.0, 30.0, np.nan])
+    shear = np.radians([5.0, -12.5, 0.0, np.nan])
+    covered = np.array([True, True, True, False])
+    weft = warp + np.pi / 2 - shear
+    return KnownField(vertices, triangles, warp, weft, shear, covered, np.array([1.0, 0, 0]))
+
+
+@pytest.fixture(scope="session")
+def meshlab():
+    """What MeshLab makes of a file: the mesh it loads."""
+
+    import pymeshlab
+
+    alive = []  # a mesh is a view into its set
+
+    def load(path):
+        alive.append(pymeshlab.MeshSet())
+        alive[-1].load_new_mesh(str(path))
+        return alive[-1].current_mesh()
+
+    return load

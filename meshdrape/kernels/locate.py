@@ -1,0 +1,268 @@
+"""From a point of the mould to the cell of the net that lies on it."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from meshdrape.kernels.emit import node_tangent
+from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT
+
+MAX_STEPS = 80
+# Corners on a plane turned by more than this from the point's own say nothing of its fibres.
+SAME_PLANE = math.cos(math.radians(20.0))
+
+
+@njit(cache=True, error_model="numpy")
+def first_nodes(mesh, net, out):
+    """A node on each face, out (m, 2): the first one, else the nearest neighbouring face's; -1 where none is near."""
+    n_warp, n_weft = net.status.shape
+    n_faces = out.shape[0]
+    out[:] = -1
+    queue = np.empty(n_faces, dtype=np.int64)
+    tail = 0
+    for i in range(n_warp):
+        for j in range(n_weft):
+            f = net.face[i, j] if net.status[i, j] <= OFF_MOULD else n_faces
+            if f < n_faces and out[f, 0] < 0:
+                out[f, 0] = i
+                out[f, 1] = j
+                queue[tail] = f
+                tail += 1
+    # over creases only where there is no other way: a node beyond one says little of this side
+    for over_creases in range(2):
+        head = 0
+        while head < tail:
+            f = queue[head]
+            head += 1
+            for k in range(3):
+                code = mesh.neighbour[f, k]
+                if code < 0:
+                    continue
+                g = code // 3
+                if g < n_faces and out[g, 0] < 0 and (over_creases == 1 or _one_plane(mesh, f, g)):
+                    out[g, 0] = out[f, 0]
+                    out[g, 1] = out[f, 1]
+                    queue[tail] = g
+                    tail += 1
+
+
+@njit(cache=True, error_model="numpy")
+def _one_plane(mesh, f, g):
+    """Whether two faces are turned against each other by less than the angle of a crease."""
+    a = mesh.frame[f]
+    b = mesh.frame[g]
+    dot = 0.0
+    for k in range(3):
+        k1 = (k + 1) % 3
+        k2 = (k + 2) % 3
+        dot += (a[3 + k1] * a[6 + k2] - a[3 + k2] * a[6 + k1]) * (b[3 + k1] * b[6 + k2] - b[3 + k2] * b[6 + k1])
+    return dot > SAME_PLANE
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _node(mesh, net, i, j, out):
+    frame = mesh.frame[net.face[i, j]]
+    for k in range(3):
+        out[k] = frame[k] + net.xy[i, j, 0] * frame[3 + k] + net.xy[i, j, 1] * frame[6 + k]
+
+
+@njit(cache=True, error_model="numpy")
+def _whole(net, i, j):
+    n_warp, n_weft = net.status.shape
+    if i < 0 or j < 0 or i >= n_warp - 1 or j >= n_weft - 1:
+        return False
+    return (
+        net.status[i, j] <= OFF_MOULD
+        and net.status[i + 1, j] <= OFF_MOULD
+        and net.status[i, j + 1] <= OFF_MOULD
+        and net.status[i + 1, j + 1] <= OFF_MOULD
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _solve(px, py, pz, n, a, u, v):
+    """Coordinates (alpha, beta) of a point from corner a along u and v, seen along the unit normal n."""
+    rx = px - a[0]
+    ry = py - a[1]
+    rz = pz - a[2]
+    # triple products with the normal leave out what stands off the plane
+    uv = n[0] * (u[1] * v[2] - u[2] * v[1]) + n[1] * (u[2] * v[0] - u[0] * v[2]) + n[2] * (u[0] * v[1] - u[1] * v[0])
+    rv = n[0] * (ry * v[2] - rz * v[1]) + n[1] * (rz * v[0] - rx * v[2]) + n[2] * (rx * v[1] - ry * v[0])
+    ur = n[0] * (u[1] * rz - u[2] * ry) + n[1] * (u[2] * rx - u[0] * rz) + n[2] * (u[0] * ry - u[1] * rx)
+    if uv == 0.0:
+        return math.nan, math.nan
+    return rv / uv, ur / uv
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first, cell, warp_out, weft_out):
+    """Cell over each point and its fibres there.
+
+    From a node nearby, the point's coordinates in the cell at hand tell how many cells to go: on a flat mould one
+    step is enough, elsewhere a few.
+
+    Parameters
+    ----------
+    tangent : (2, n_warp, n_weft, 3)
+        Directions of warp and weft at the nodes where they are at hand, else of length 0: they are then found as needed.
+    face : (n,) int64
+        Face of the surface that holds each point; points of one face follow each other.
+    point, normal : (n, 3)
+    first : (m, 2)
+        From `first_nodes`.
+    cell : (n, 2) int64
+        Gets the cell; -1 where no whole cell lies on the point.
+    warp_out, weft_out : (n, 3)
+        Get the unit directions of the fibres, in the plane of the point's face.
+    """
+    a = np.empty(3)
+    u = np.empty(3)
+    v = np.empty(3)
+    n_warp, n_weft = net.status.shape
+    last_face = -1
+    i = 0
+    j = 0
+    for q in range(len(face)):
+        cell[q, 0] = -1
+        cell[q, 1] = -1
+        f = face[q]
+        if first[f, 0] < 0:
+            continue
+        found = False
+        for attempt in range(2):
+            if attempt == 1 or f != last_face:
+                i = first[f, 0]
+                j = first[f, 1]
+            px = point[q, 0]
+            py = point[q, 1]
+            pz = point[q, 2]
+            alpha = 0.0
+            beta = 0.0
+            for step in range(MAX_STEPS):
+                # the edges of the cell at hand, borrowed from the cell before where it ends
+                _node(mesh, net, i, j, a)
+                if i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD:
+                    _node(mesh, net, i + 1, j, u)
+                    for k in range(3):
+                        u[k] -= a[k]
+                elif i > 0 and net.status[i - 1, j] <= OFF_MOULD:
+                    _node(mesh, net, i - 1, j, u)
+                    for k in range(3):
+                        u[k] = a[k] - u[k]
+                else:
+                    break
+                if j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD:
+                    _node(mesh, net, i, j + 1, v)
+                    for k in range(3):
+                        v[k] -= a[k]
+                elif j > 0 and net.status[i, j - 1] <= OFF_MOULD:
+                    _node(mesh, net, i, j - 1, v)
+                    for k in range(3):
+                        v[k] = a[k] - v[k]
+                else:
+                    break
+                alpha, beta = _solve(px, py, pz, normal[q], a, u, v)
+                if not (abs(alpha) < 1e6 and abs(beta) < 1e6):
+                    break
+                di = int(math.floor(alpha))
+                dj = int(math.floor(beta))
+                if di == 0 and dj == 0:
+                    found = _whole(net, i, j)
+                    break
+                # a cell bent over a crease may send the point to its neighbour and back: near enough is in, at last
+                near = 0.55 + 0.005 * step
+                if abs(alpha - 0.5) < near and abs(beta - 0.5) < near and _whole(net, i, j):
+                    found = True
+                    break
+                moved = False
+                for _shrink in range(12):
+                    ti = i + di
+                    tj = j + dj
+                    if 0 <= ti < n_warp and 0 <= tj < n_weft and net.status[ti, tj] <= OFF_MOULD and (di != 0 or dj != 0):
+                        i = ti
+                        j = tj
+                        moved = True
+                        break
+                    if di == 0 and dj == 0:
+                        break
+                    di = int(di / 2)
+                    dj = int(dj / 2)
+                if not moved:
+                    break
+            if found:
+                break
+        last_face = f
+        if not found:
+            i = first[f, 0]
+            j = first[f, 1]
+            continue
+        cell[q, 0] = i
+        cell[q, 1] = j
+        alpha = min(max(alpha, 0.0), 1.0)
+        beta = min(max(beta, 0.0), 1.0)
+        for family in range(2):
+            sx = 0.0
+            sy = 0.0
+            sz = 0.0
+            for corner in range(4):
+                ci = i + (corner & 1)
+                cj = j + (corner >> 1)
+                g = mesh.frame[net.face[ci, cj]]
+                nx = g[4] * g[8] - g[5] * g[7]
+                ny = g[5] * g[6] - g[3] * g[8]
+                nz = g[3] * g[7] - g[4] * g[6]
+                weight = (alpha if corner & 1 else 1.0 - alpha) * (beta if corner >> 1 else 1.0 - beta)
+                if nx * normal[q, 0] + ny * normal[q, 1] + nz * normal[q, 2] < SAME_PLANE:
+                    weight *= 1e-9
+                weight += 1e-12
+                if tangent.shape[1] > 0:
+                    if not math.isnan(tangent[family, ci, cj, 0]):
+                        sx += weight * tangent[family, ci, cj, 0]
+                        sy += weight * tangent[family, ci, cj, 1]
+                        sz += weight * tangent[family, ci, cj, 2]
+                    continue
+                tx, ty = node_tangent(mesh, net, start, family, ci, cj, warp if family == WARP else weft)
+                sx += weight * (tx * g[3] + ty * g[6])
+                sy += weight * (tx * g[4] + ty * g[7])
+                sz += weight * (tx * g[5] + ty * g[8])
+            off = sx * normal[q, 0] + sy * normal[q, 1] + sz * normal[q, 2]
+            sx -= off * normal[q, 0]
+            sy -= off * normal[q, 1]
+            sz -= off * normal[q, 2]
+            size = math.sqrt(sx * sx + sy * sy + sz * sz)
+            if family == WEFT:
+                weft_out[q, 0] = sx / size
+                weft_out[q, 1] = sy / size
+                weft_out[q, 2] = sz / size
+            else:
+                warp_out[q, 0] = sx / size
+                warp_out[q, 1] = sy / size
+                warp_out[q, 2] = sz / size
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def cells_by_face(net, shear, touching, locking, initial_angle, largest, area, over):
+    """Per face of the mould, of the cells whose first corner on it lies there: largest |shear|, area, area over the lock.
+
+    largest, area, over : (m,) accumulated; areas in cells of sin(angle) = 1.
+    """
+    n_faces = len(largest)
+    for i in range(shear.shape[0]):
+        for j in range(shear.shape[1]):
+            if not touching[i, j]:
+                continue
+            f = n_faces
+            for corner in range(4):
+                ci = i + (corner & 1)
+                cj = j + (corner >> 1)
+                if net.status[ci, cj] == 0 and net.face[ci, cj] < n_faces:
+                    f = net.face[ci, cj]
+                    break
+            if f == n_faces:
+                continue
+            size = math.sin(initial_angle - shear[i, j])
+            area[f] += size
+            if abs(shear[i, j]) > locking:
+                over[f] += size
+            largest[f] = max(largest[f], abs(shear[i, j]))

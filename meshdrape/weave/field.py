@@ -1,0 +1,143 @@
+"""The net read off on the mould's own triangles: fibre angles, shear, coverage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshdrape.errors import StartError
+from meshdrape.kernels import locate
+from meshdrape.weave.measures import Measures
+from meshdrape.weave.net import run_kernel
+from meshdrape.weave.refine import refined
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# A reference axis this near to the normal, rad, is none: the second one takes its place.
+ALONG_NORMAL = np.radians(5.0)
+
+
+@dataclass(frozen=True, eq=False)
+class MouldField:
+    """What lies on each triangle of the mould, refined where it is coarser than the net.
+
+    Attributes
+    ----------
+    vertices : (n, 3) mm
+    triangles : (m, 3) int64
+    parent : (m,) int64
+        Triangle of the mould each one is part of.
+    area : (m,) mm2
+    covered : (m,) bool
+        Whether a whole cell lies on the triangle's centre.
+    warp_angle, weft_angle : (m,) rad in (-pi/2, pi/2]
+        Fibre angle from the projected reference axis, right-handed about the triangle's normal. NaN where not covered.
+    shear : (m,) rad, signed; NaN where not covered
+    reference : (3,)
+        The axis asked for.
+    """
+
+    vertices: FloatArray
+    triangles: IntArray
+    parent: IntArray
+    area: FloatArray
+    covered: NDArray[np.bool_]
+    warp_angle: FloatArray
+    weft_angle: FloatArray
+    shear: FloatArray
+    reference: FloatArray
+
+    @property
+    def coverage_fraction(self) -> float:
+        """Share of the mould's area under cloth, 0 to 1."""
+        return float(self.area[self.covered].sum() / self.area.sum())
+
+
+def read_off(
+    measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_triangles: int = 500_000
+) -> MouldField:
+    """Fibre angles, shear and coverage on the triangles of the mould.
+
+    Parameters
+    ----------
+    measures : Measures
+    reference : (3,) float
+        Axis whose projection is angle zero. Where it is within 5 degrees of the normal, global y serves, or x if the
+        axis is y.
+    most_triangles : int
+        Bound on the refinement.
+
+    Raises
+    ------
+    StartError
+        If the reference is zero or not finite.
+    """
+    net = measures.net
+    axis = np.asarray(reference, dtype=np.float64)
+    if axis.shape != (3,) or not np.isfinite(axis).all() or not axis.any():
+        msg = f"reference axis {axis.tolist()} is no direction: give three numbers that are not all zero"
+        raise StartError(msg)
+    axis = axis / np.linalg.norm(axis)
+    mould, mesh, fabric = net.mould, net.surface.unfolding, net.fabric
+    total = float(mould.surface.face_area.sum())
+    # triangles of the net's own size, unless that is too many: halving leaves about two in three of this area
+    longest = max(1.5 * max(fabric.warp_spacing, fabric.weft_spacing), float(np.sqrt(6.0 * total / most_triangles)))
+    vertices, triangles, parent = refined(mould.vertices, mould.triangles, longest, most_triangles)
+    order = np.argsort(parent, kind="stable")
+    triangles, parent = triangles[order], parent[order]
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    normal = mould.surface.face_normal[parent]
+
+    face = np.full(len(mould.triangles), -1)
+    face[net.surface_face] = np.arange(len(net.surface_face))
+    draped = np.flatnonzero(face[parent] >= 0)
+    n = len(draped)
+    cell = np.full((n, 2), -1)
+    warp, weft = np.empty((n, 3)), np.empty((n, 3))
+    first = np.empty((len(net.surface_face), 2), dtype=np.int64)
+    locate.first_nodes(mesh, net.lattice, first)
+    at, centre, up = face[parent[draped]], ((a + b + c) / 3)[draped], normal[draped]
+    # a net with fewer nodes than points gives its tangents once, a larger one only where they are asked for
+    few = net.shape[0] * net.shape[1] <= 2 * n
+    tangent = np.stack(net.directions(0, net.shape[0])) if few else np.empty((2, 0, 0, 3))
+    step = max(1, -(-n // (4 * net.threads)))
+    run_kernel(
+        locate.read_cells,
+        [
+            (mesh, net.lattice, net.start, fabric.warp_spacing, fabric.weft_spacing, tangent, at[k : k + step],
+             centre[k : k + step], up[k : k + step], first, cell[k : k + step], warp[k : k + step], weft[k : k + step])
+            for k in range(0, n, step)
+        ],
+        net.threads,
+    )  # fmt: skip
+    on = cell[:, 0] >= 0
+    covered = np.zeros(len(triangles), dtype=np.bool_)
+    covered[draped] = on
+    values = np.full((3, len(triangles)), np.nan)
+    kept = draped[on]
+    zero = _projected(axis, normal[kept])
+    values[0, kept] = _angle_about(zero, warp[on], normal[kept])
+    values[1, kept] = _angle_about(zero, weft[on], normal[kept])
+    values[2, kept] = measures.cell_shear[cell[on, 0], cell[on, 1]]
+    return MouldField(vertices, triangles, parent, area, covered, values[0], values[1], values[2], axis)
+
+
+def _projected(axis: FloatArray, normal: FloatArray) -> FloatArray:
+    """The reference axis in each plane, unit, (n, 3)."""
+    second = np.array([1.0, 0.0, 0.0]) if abs(axis[1]) > 0.9 else np.array([0.0, 1.0, 0.0])
+    standing = np.abs(normal @ axis) > np.cos(ALONG_NORMAL)
+    chosen = np.where(standing[:, None], second, axis)
+    flat = chosen - np.einsum("ij,ij->i", chosen, normal)[:, None] * normal
+    return np.asarray(flat / np.linalg.norm(flat, axis=1)[:, None])
+
+
+def _angle_about(zero: FloatArray, direction: FloatArray, normal: FloatArray) -> FloatArray:
+    """Angle from `zero` to `direction` about the normal, in (-pi/2, pi/2]: a fibre has no sense."""
+    angle = np.arctan2(
+        np.einsum("ij,ij->i", np.cross(zero, direction), normal), np.einsum("ij,ij->i", zero, direction)
+    )
+    return np.asarray(np.pi / 2 - np.mod(np.pi / 2 - angle, np.pi))

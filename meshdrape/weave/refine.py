@@ -1,0 +1,74 @@
+"""Triangles split until none is coarser than a given length, neighbours alike."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def refined(
+    vertices: FloatArray, triangles: IntArray, longest: float, most: int
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """The same surface in triangles whose edges are no longer than `longest`, conforming.
+
+    Every edge that is too long is halved, in both triangles that share it, round after round, so long thin triangles
+    are cut across, not into slivers.
+
+    Parameters
+    ----------
+    vertices : (n, 3) mm
+    triangles : (m, 3)
+    longest : float
+        mm.
+    most : int
+        No round is begun that could end with more triangles than this.
+
+    Returns
+    -------
+    vertices, triangles
+    parent : (k,) int64
+        The given triangle each one came from.
+    """
+    parent = np.arange(len(triangles))
+    while True:
+        tail, head = triangles, np.roll(triangles, -1, axis=1)
+        length = np.linalg.norm(vertices[head] - vertices[tail], axis=2)
+        marked = length > longest
+        count = int(marked.sum())
+        if count == 0 or len(triangles) + count > most:
+            return vertices, triangles, parent
+        key = np.minimum(tail, head)[marked] * len(vertices) + np.maximum(tail, head)[marked]
+        split, number = np.unique(key, return_inverse=True)
+        middle = np.zeros_like(triangles)
+        middle[marked] = len(vertices) + number
+        u, v = split // len(vertices), split % len(vertices)
+        vertices = np.concatenate([vertices, 0.5 * (vertices[u] + vertices[v])])
+        triangles, parent = _split(triangles, parent, marked, np.argmax(length, axis=1), middle)
+
+
+def _split(
+    triangles: IntArray, parent: IntArray, marked: NDArray[np.bool_], wanted: IntArray, middle: IntArray
+) -> tuple[IntArray, IntArray]:
+    rows = np.arange(len(triangles))
+    whole = ~marked.any(axis=1)
+    pieces, parents = [triangles[whole]], [parent[whole]]
+    # turned so that the longest edge runs from a to b; m halves it, n halves b-c and o halves c-a where marked
+    order = (wanted[:, None] + np.arange(3)) % 3
+    a, b, c = (triangles[rows, order[:, k]] for k in range(3))
+    m, n, o = (middle[rows, order[:, k]] for k in range(3))
+    has_n, has_o = marked[rows, order[:, 1]], marked[rows, order[:, 2]]
+    cut = ~whole
+    for choose, triple in (
+        (cut & ~has_n, (m, b, c)),
+        (cut & has_n, (m, b, n)),
+        (cut & has_n, (m, n, c)),
+        (cut & ~has_o, (m, c, a)),
+        (cut & has_o, (m, c, o)),
+        (cut & has_o, (m, o, a)),
+    ):
+        pieces.append(np.stack(triple, axis=1)[choose])
+        parents.append(parent[choose])
+    return np.concatenate(pieces), np.concatenate(parents)
