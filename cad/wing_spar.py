@@ -210,10 +210,11 @@ def with_fillet(
         msg = f"fillet_radius={fillet_radius}: no such fillet fits along the crease"
         raise ValueError(msg)
     rounded = cq.Shape.cast(rounding.Shape()).Solids()[0]
-    made = {"fillet": rounding.Generated(crease.wrapped).First()}
+    made = {}
     for name, face in faces.items():
         changed = rounding.Modified(face.wrapped)
         made[name] = changed.First() if changed.Size() else face.wrapped
+    made["fillet"] = rounding.Generated(crease.wrapped).First()
     # The history gives faces as they are stored; the solid has them with their outward orientation.
     return rounded, {
         name: next(face for face in rounded.Faces() if face.wrapped.IsSame(old)) for name, old in made.items()

@@ -21,43 +21,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.mould.patch import Nodes
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 FLIP_GAIN = 1e-6  # rad of opposite angle a flip must gain, so that round-off cannot turn it to and fro
 THINNEST = 1e-6  # smallest share a triangle may have of its quadrilateral in (u, v): less is a collinear corner
 MAX_ROUNDS = 500
-
-
-@dataclass
-class Nodes:
-    """Nodes of triangulated CAD faces; a node belongs to one face and one side of a seam.
-
-    Attributes
-    ----------
-    face : (k,) int
-        Index of the CAD face.
-    uv : (k, 2) float
-        Parameters on the face, scaled so that both are roughly millimetres.
-    position, normal : (k, 3) float
-        Point in mm, unit normal.
-    metric : (k, 3) float
-        M_uu, M_uv, M_vv.
-    """
-
-    face: Ints
-    uv: Floats
-    position: Floats
-    normal: Floats
-    metric: Floats
-    tangent: Floats
-
-    def take(self, index: Ints) -> Nodes:
-        return Nodes(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
-
-    def append(self, other: Nodes) -> None:
-        for name in self.__dataclass_fields__:
-            setattr(self, name, np.concatenate([getattr(self, name), getattr(other, name)]))
 
 
 Evaluate = Callable[[Ints, Floats], Nodes]
@@ -171,7 +142,7 @@ class Facets:
         outer = np.concatenate([_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))])  # bc, ca, ad, db
         # left = a m c, left_b = m b c, right = m a d, right_b = b m d
         moved = np.concatenate([3 * left_b + 1, 3 * left + 2, 3 * right + 1, 3 * right_b + 2])
-        self.nodes.append(middle)
+        self.nodes = Nodes.joined([self.nodes, middle])
         self.triangles[left] = np.column_stack([a, m, c])
         self.triangles[right] = np.column_stack([m, a, d])
         self.triangles = np.vstack([self.triangles, np.column_stack([m, b, c]), np.column_stack([b, m, d])])

@@ -17,6 +17,7 @@ from meshdrape.surface import Surface
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import check_memory, empty_lattice, free_memory, generator_counts, lay_generators
+from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net, run_kernel
 from meshdrape.weave.quadrants import fill
 from meshdrape.weave.start import seed_star
@@ -114,6 +115,7 @@ def drape(
     counts = generator_counts(part, fabric, extent)
     lattice, start = lay_generators(surface, fabric, star, counts, memory)
     lattice, start, settled = _fill_all(surface, fabric, lattice, start, counts, memory, threads, progress)
+    end_where_met(part, surface, fabric, lattice, start)
     _trim(surface, fabric, lattice, start, threads)
     return Net(
         mould=mould,

@@ -47,9 +47,11 @@ class KnownNet:
             object.__setattr__(self, name, along / np.linalg.norm(along, axis=2, keepdims=True))
 
     def positions(self, i0, i1):
+        assert 0 <= i0 < i1 <= len(self.node_position)
         return self.node_position[i0:i1]
 
     def directions(self, i0, i1):
+        assert 0 <= i0 < i1 <= len(self.node_position)
         return self.warp_direction[i0:i1], self.weft_direction[i0:i1]
 
 

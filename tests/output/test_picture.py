@@ -13,6 +13,7 @@ from meshdrape.output import draw_net
 from meshdrape.output.camera import fitted, view_axes
 from meshdrape.output.colour import shear_colour
 from meshdrape.output.scene import drawn_cells, drawn_fibres
+from meshdrape.output.stage import Stage
 from meshdrape.weave.status import NodeStatus
 
 
@@ -21,20 +22,25 @@ def pixels(tmp_path_factory):
     """Draw a net and return the picture, (height, width, 3)."""
 
     def draw(net, measures):
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkIOImage import vtkPNGReader
-
         path = tmp_path_factory.mktemp("picture") / "net.png"
         draw_net(net, measures, path)
         assert [p.name for p in path.parent.iterdir()] == ["net.png"]
-        reader = vtkPNGReader()
-        reader.SetFileName(str(path))
-        reader.Update()
-        width, height, _ = reader.GetOutput().GetDimensions()
-        values = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
-        return values.reshape(height, width, -1)[::-1, :, :3].astype(int)
+        return read_png(path)
 
     return draw
+
+
+def read_png(path):
+    """The picture in a file, (height, width, 3), from the top."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOImage import vtkPNGReader
+
+    reader = vtkPNGReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    values = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return values.reshape(height, width, -1)[::-1, :, :3].astype(int)
 
 
 def share_near(picture, colour, within):
@@ -123,6 +129,20 @@ def test_a_net_without_a_whole_cell_is_a_picture_of_the_mould(flat, pixels):
         bare, replace(measures, cell_shear=np.full_like(measures.cell_shear, np.nan), max_shear=np.nan)
     )
     assert share_near(drawing, (190, 190, 190), 40) > 0.1
+
+
+@pytest.mark.parametrize(("cull", "middle"), [(False, (98, 164, 224)), (True, (255, 255, 255))])
+def test_cells_are_drawn_on_the_side_of_the_cloth(tmp_path, cull, middle):
+    """A square seen from behind: to be left out, so that it cannot come through the mould it lies under."""
+    square = np.array([[[0.0, 0, 0], [0, 10, 0], [10, 10, 0], [10, 0, 0]]])
+    view, _ = fitted(np.eye(3), square[0], square[0], (50.0, 50.0), 100.0, (100.0, 100.0))
+    stage = Stage(200, 200, view)
+    stage.add_faces(square, np.array([[0.0, 0, 1]]), (98, 164, 224, 255), cull=cull)
+    (tmp_path / "square.png").write_bytes(stage.png())
+    picture = read_png(tmp_path / "square.png")
+    assert np.abs(picture[100, 100] - middle).max() < 12
+    is_blue = picture[..., 0] < 200
+    assert is_blue.sum() == (0 if cull else 100 * 100)
 
 
 def test_a_missing_folder_is_told(flat, tmp_path):

@@ -57,7 +57,7 @@ def test_the_header_is_plain(file):
 
 
 def test_big_endian_and_any_order_of_properties_are_read(tmp_path):
-    rows = np.zeros(3, dtype=[("z", ">f4"), ("length", "u1"), ("vertex_indices", ">i4", (2,)), ("x", ">f8")])
+    rows = np.zeros(3, dtype=[("z", ">f4"), ("length", ">u2"), ("vertex_indices", ">i4", (2,)), ("x", ">f8")])
     rows["z"], rows["x"], rows["length"], rows["vertex_indices"] = (
         [1, 2, 3],
         [1 / 3, 2, 3],
@@ -67,7 +67,7 @@ def test_big_endian_and_any_order_of_properties_are_read(tmp_path):
     header = (
         "ply\r\nformat binary_big_endian 1.0\r\nobj_info hello\r\nelement thing 3\r\nproperty float32 z\r\n"
     )
-    header += "property list uint8 int32 vertex_indices\r\nproperty double x\r\nend_header\r\n"
+    header += "property list ushort int32 vertex_indices\r\nproperty double x\r\nend_header\r\n"
     path = tmp_path / "big.ply"
     path.write_bytes(header.encode() + rows.tobytes())
     thing = read_ply(path).elements["thing"]

@@ -1,0 +1,64 @@
+"""A net on a closed or tubular mould ends where it meets itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshdrape.kernels.meet import spread_on_faces, stop_where_met
+from meshdrape.kernels.tables import Lattice, Start
+from meshdrape.surface import Surface
+from meshdrape.weave.collar import is_hole
+from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.status import NodeStatus
+
+# A disk whose angle defects sum to less than this, rad, cannot turn a sheet round on itself.
+HARMLESS_CURVATURE = np.pi / 2
+# On faces below this many spacings across, far-apart indices on one face are proof either way.
+SMALL_FACE = 10.0
+
+
+def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lattice, start: Start) -> int:
+    """Mark MET_ITSELF every node that lies where the net already lies, and all behind it; their number.
+
+    Nodes are gone through by their distance from the seed in the lattice, so the outcome is one, whatever the order
+    in which they were placed.
+
+    Parameters
+    ----------
+    mould : Surface
+        The draped part, without its collar.
+    surface : Surface
+        With it.
+    """
+    if _cannot_meet(mould):
+        return 0
+    mesh = surface.unfolding
+    spacing = min(fabric.warp_spacing, fabric.weft_spacing)
+    x1, x2, y2 = mesh.corner.T
+    diameter = np.maximum(x1, np.maximum(np.hypot(x2, y2), np.hypot(x2 - x1, y2)))
+    small = bool((diameter[: len(mould.faces)] < SMALL_FACE * spacing).all())
+    window = np.empty((len(diameter), 4), dtype=np.int64)
+    # collar faces reach far out; on them windows say nothing
+    measured = np.where(np.arange(len(diameter)) < len(mould.faces), diameter, np.inf)
+    if small and not spread_on_faces(lattice, window, measured, spacing):
+        return 0
+    i, j = np.nonzero(lattice.status <= NodeStatus.OFF_MOULD)
+    i0, j0 = start.index
+    ring = np.abs(i - i0) + np.abs(j - j0)
+    order = np.stack([i, j], axis=1)[np.lexsort((j, i, ring))]
+    position = np.full((*lattice.status.shape, 3), np.nan)
+    frame = mesh.frame[lattice.face[i, j]]
+    position[i, j] = (
+        frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
+    )
+    radius = max(fabric.warp_spacing, fabric.weft_spacing)
+    return int(stop_where_met(mesh, lattice, start.index, position, order, radius))
+
+
+def _cannot_meet(mould: Surface) -> bool:
+    """Whether the mould is a disk, holes apart, with too little curvature to bring a sheet back to itself."""
+    outlines = [loop for loop in mould.border_loops if not is_hole(mould, loop)]
+    if len(outlines) != 1:
+        return False
+    inner = ~mould.border_vertex
+    return float(np.abs(mould.vertex_defect[inner]).sum()) < HARMLESS_CURVATURE
