@@ -166,6 +166,11 @@ class Surface:
         loops.sort(key=lambda loop: -float(self.half_edge_length(loop).sum()))
         return loops
 
+    def is_hole(self, loop: IntArray) -> bool:
+        """Whether a border turns backwards as a whole: about -2 pi for a hole, 0 for a tube's end, 2 pi for an outline."""
+        tails = self.faces[loop // 3, loop % 3]
+        return float(np.sum(np.pi - self.vertex_angle[tails])) < -np.pi
+
     def half_edge_length(self, half: IntArray) -> FloatArray:
         """Lengths of the half-edges 3 f + k, mm."""
         face, k = half // 3, half % 3
@@ -186,6 +191,15 @@ class Surface:
         rank = np.empty(len(first), dtype=np.int64)
         rank[label[np.sort(first)]] = np.arange(len(first))
         return rank[label]
+
+    @cached_property
+    def mould_part(self) -> Surface:
+        """The surface without its extension."""
+        n = int(np.count_nonzero(self.face_rim < 0))
+        if n == len(self.faces):
+            return self
+        faces = self.faces[:n]
+        return Surface.from_arrays(self.vertices[: int(faces.max()) + 1], faces)
 
     @property
     def n_components(self) -> int:

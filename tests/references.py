@@ -132,30 +132,47 @@ def hypar_net(k: float, length: float, n: int) -> tuple[FloatArray, FloatArray]:
 # --- developable ----------------------------------------------------------------------------------------------------
 
 
-def flat_lattice(i: FloatArray, j: FloatArray, spacing: tuple[float, float], warp_at: float, initial_angle: float = np.pi / 2) -> FloatArray:
-    """Nodes (i, j) of an unsheared sheet in the plane, seed at the origin, warp at the angle `warp_at` from x."""
-    weft_at = warp_at + initial_angle
-    u, v = np.asarray(i)[..., None] * spacing[0], np.asarray(j)[..., None] * spacing[1]
-    return u * [np.cos(warp_at), np.sin(warp_at)] + v * [np.cos(weft_at), np.sin(weft_at)]
-
-
 def rolled_on_cylinder(flat: FloatArray, radius: float, azimuth: float) -> FloatArray:
-    """Points (..., 2) of the plane, x along the axis z and y against the azimuth, on a cylinder about z, (..., 3)."""
-    p = azimuth - flat[..., 1] / radius
+    """Points (..., 2) of the plane on a cylinder about z, (..., 3): x along the axis, y towards larger azimuth.
+
+    Seen against the axis's direction the plane's normal points at the axis.
+    """
+    p = azimuth + flat[..., 1] / radius
     return np.stack([radius * np.cos(p), radius * np.sin(p), flat[..., 0]], axis=-1)
 
 
 def rolled_on_cone(flat: FloatArray, half_angle: float, slant: float, azimuth: float) -> FloatArray:
-    """Points (..., 2) of the plane, x down the ruling at the seed and y against the azimuth, on a cone about z.
+    """Points (..., 2) of the plane on a cone about z with its apex at the origin, (..., 3).
 
-    The apex is the origin, the seed at `slant` from it. Unrolled, the cone is a sector of the plane with polar angle
-    azimuth x sin(half_angle).
+    x runs down the ruling from the seed at `slant` from the apex, y towards larger azimuth. Unrolled, the cone is a
+    sector of the plane with polar angle azimuth x sin(half_angle).
     """
     x, y = flat[..., 0] + slant, flat[..., 1]
     rho, turn = np.hypot(x, y), np.arctan2(y, x)
     s, c = np.sin(half_angle), np.cos(half_angle)
-    p = azimuth - turn / s
+    p = azimuth + turn / s
     return np.stack([rho * s * np.cos(p), rho * s * np.sin(p), rho * c], axis=-1)
+
+
+# --- pyramid --------------------------------------------------------------------------------------------------------
+
+
+def cube_corner_net(spacing: float, n: int, first: float, quadrant: int) -> FloatArray:
+    """One quadrant, (n + 1, n + 1, 3), of the net whose seed is the corner of a cube, as `moulds.cube_corner` has it.
+
+    The half-fibres leave 67.5 degrees apart, the first at the angle `first` from the x axis counter-clockwise about
+    the outward diagonal; `quadrant` lies between half-fibre `quadrant` and the next. Its first index counts along the
+    half-fibre it starts with. Each quadrant is a plane sheared lattice, folded over the cube's edges.
+    """
+    i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
+    sector = 3 * np.pi / 8
+    place = spacing * (i + j * np.exp(1j * sector))
+    turn = np.mod(first + quadrant * sector + np.angle(place), 3 * np.pi / 2)
+    face = np.minimum((turn / (np.pi / 2) + 1e-12).astype(int), 2)
+    within = turn - face * np.pi / 2
+    axis = np.eye(3)
+    flat = np.abs(place)[..., None] * np.stack([np.cos(within), np.sin(within)], axis=-1)
+    return flat[..., :1] * axis[face] + flat[..., 1:] * axis[(face + 1) % 3]
 
 
 # --- wing and spar --------------------------------------------------------------------------------------------------
@@ -242,7 +259,8 @@ class CreaseNet:
     ----------
     side : (n, rows) 0 on the wing, 1 on the spar
     place : (n, rows, 2) in that side's plane
-    shear : (n - 1, rows - 1) rad, on cells that lie on one side; NaN on those that straddle the crease
+    shear : (n - 1, rows - 1) rad, warp along the rows, weft from larger x to smaller and down the spar; NaN on cells
+        that straddle the crease
     region : 0 on the wing, 1 where rows come from the left ribbon, 2 where they come from the wing, -1 for cells that
         straddle and for the row whose left link crosses the corner
     """
@@ -298,8 +316,8 @@ class CreaseNet:
     def _measure(self, from_wing: NDArray[np.bool_]) -> None:
         d, a, b = self.place[:-1, 1:], self.place[:-1, :-1], self.place[1:, 1:]
         count = self.side[:-1, 1:] + self.side[:-1, :-1] + self.side[1:, 1:] + self.side[1:, :-1]
-        row, column = b - d, d - a
-        angle = np.arctan2(column[..., 0] * row[..., 1] - column[..., 1] * row[..., 0], (row * column).sum(axis=-1))
+        row, column = b - d, a - d
+        angle = np.arctan2(row[..., 0] * column[..., 1] - row[..., 1] * column[..., 0], (row * column).sum(axis=-1))
         self.shear = np.where(count % 4 == 0, np.pi / 2 - angle, np.nan)
         fed = np.where(from_wing[:-1] & from_wing[1:], 2, np.where(from_wing[:-1] | from_wing[1:], -1, 1))
         self.region = np.where(count == 0, 0, np.where(count == 4, fed[None, :], -1))

@@ -61,16 +61,45 @@ def node_tangent(mesh, net, start, family, i, j, spacing):
 @njit(cache=True, error_model="numpy", nogil=True)
 def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
     """Unit tangents (rows, n_weft, 3) of the fibres at the nodes of the rows from i_first on; NaN without a node."""
+    n_warp, n_weft = net.status.shape
     for a in range(warp_out.shape[0]):
         i = i_first + a
-        for j in range(net.status.shape[1]):
+        for j in range(n_weft):
             if net.status[i, j] > OFF_MOULD:
                 warp_out[a, j, :] = math.nan
                 weft_out[a, j, :] = math.nan
                 continue
-            frame = mesh.frame[net.face[i, j]]
-            px, py = node_tangent(mesh, net, start, WARP, i, j, warp)
-            qx, qy = node_tangent(mesh, net, start, WEFT, i, j, weft)
+            f = net.face[i, j]
+            frame = mesh.frame[f]
+            # where one face holds the neighbours on both sides their chord is the mean of the two edges
+            if (
+                0 < i < n_warp - 1
+                and net.status[i - 1, j] <= OFF_MOULD
+                and net.status[i + 1, j] <= OFF_MOULD
+                and net.face[i - 1, j] == f
+                and net.face[i + 1, j] == f
+            ):
+                px = net.xy[i + 1, j, 0] - net.xy[i - 1, j, 0]
+                py = net.xy[i + 1, j, 1] - net.xy[i - 1, j, 1]
+                size = math.sqrt(px * px + py * py)
+                px /= size
+                py /= size
+            else:
+                px, py = node_tangent(mesh, net, start, WARP, i, j, warp)
+            if (
+                0 < j < n_weft - 1
+                and net.status[i, j - 1] <= OFF_MOULD
+                and net.status[i, j + 1] <= OFF_MOULD
+                and net.face[i, j - 1] == f
+                and net.face[i, j + 1] == f
+            ):
+                qx = net.xy[i, j + 1, 0] - net.xy[i, j - 1, 0]
+                qy = net.xy[i, j + 1, 1] - net.xy[i, j - 1, 1]
+                size = math.sqrt(qx * qx + qy * qy)
+                qx /= size
+                qy /= size
+            else:
+                qx, qy = node_tangent(mesh, net, start, WEFT, i, j, weft)
             for k in range(3):
                 warp_out[a, j, k] = px * frame[3 + k] + py * frame[6 + k]
                 weft_out[a, j, k] = qx * frame[3 + k] + qy * frame[6 + k]

@@ -114,7 +114,7 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
     cell : (n, 2) int64
         Gets the cell; -1 where no whole cell lies on the point.
     warp_out, weft_out : (n, 3)
-        Get the unit directions of the fibres, in the plane of the point's face.
+        Get the unit directions of the fibres, in the plane of the point's face; of length 0 where they are not wanted.
     """
     a = np.empty(3)
     u = np.empty(3)
@@ -199,6 +199,8 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
             continue
         cell[q, 0] = i
         cell[q, 1] = j
+        if len(warp_out) == 0:
+            continue
         alpha = min(max(alpha, 0.0), 1.0)
         beta = min(max(beta, 0.0), 1.0)
         for family in range(2):

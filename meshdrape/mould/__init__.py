@@ -1,1 +1,5 @@
-"""."""
+"""A file or a script in, a mould out: faces chosen, tessellated, welded, checked; healed only on request."""
+
+from meshdrape.mould.mould import CadFace, Mould
+
+__all__ = ["CadFace", "Mould"]

@@ -4,7 +4,7 @@ Importing this imports neither VTK nor any other library of drawing.
 """
 
 from meshdrape.output.fibres_ply import write_fibres_ply
-from meshdrape.output.files import atomic_write
+from meshdrape.output.files import atomic_write, check_target
 from meshdrape.output.mould_ply import write_mould_ply
 from meshdrape.output.net_ply import StoredNet, read_net, write_ply
 from meshdrape.output.picture import draw_net
@@ -13,6 +13,7 @@ from meshdrape.output.summary import json_text, write_json
 __all__ = [
     "StoredNet",
     "atomic_write",
+    "check_target",
     "draw_net",
     "json_text",
     "read_net",

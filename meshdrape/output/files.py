@@ -32,8 +32,8 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
         The folder does not exist or cannot be written to, the target is a folder or a device, or the disk
         is full.
     """
+    check_target(path)
     target = Path(os.path.realpath(path))
-    _check_target(target, path)
     partial = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         file = partial.open("xb")
@@ -53,7 +53,9 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
             partial.unlink()
 
 
-def _check_target(target: Path, path: str | os.PathLike[str]) -> None:
+def check_target(path: str | os.PathLike[str]) -> None:
+    """Raise FileError now if a file could not be written under this name later."""
+    target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
         msg = f"cannot write {path}: the folder {target.parent} does not exist; create it or choose another"
         raise FileError(msg)

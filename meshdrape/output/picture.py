@@ -71,10 +71,8 @@ def draw_net(net: Net, measures: Measures, path: str | os.PathLike[str]) -> None
     warp, weft, step = drawn_fibres(net, _FIBRE_GAP * view.mm_per_pixel, cells.block)
     stage.add_segments(weft, WEFT, 2.0)
     stage.add_segments(warp, WARP, 2.0)
-    for bottom, top in (
-        (0, _FOOTER - _BLEED),
-        (height - _HEADER + _BLEED, height),
-    ):  # a mould may reach beyond
+    # a mould larger than its cloth may reach into header and footer
+    for bottom, top in ((0, _FOOTER - _BLEED), (height - _HEADER + _BLEED, height)):
         stage.add_polygon([(0, bottom), (_WIDTH, bottom), (_WIDTH, top), (0, top)], _WHITE)
     _mark_seed(stage, net, view)
     _mark_largest_shear(stage, net, measures, view)

@@ -41,7 +41,8 @@ class DrawnCells:
     @property
     def normals(self) -> FloatArray:
         """Unit normals, (n, 3)."""
-        return np.asarray(self._twice_area / np.linalg.norm(self._twice_area, axis=1)[:, None])
+        size = np.linalg.norm(self._twice_area, axis=1)[:, None]
+        return np.asarray(self._twice_area / np.maximum(size, 1e-300))  # a cell folded flat has none
 
     @property
     def areas(self) -> FloatArray:

@@ -38,7 +38,7 @@ def extended(surface: Surface, depth: float) -> Surface:
     faces = [surface.faces]
     count = len(surface.vertices)
     for loop in surface.border_loops:
-        if is_hole(surface, loop):
+        if surface.is_hole(loop):
             new_vertices, new_faces = _fill(surface, loop, count)
         else:
             new_vertices, new_faces = _strip(surface, loop, depth, count)
@@ -48,12 +48,6 @@ def extended(surface: Surface, depth: float) -> Surface:
     if len(faces) == 1:
         return surface
     return Surface.from_arrays(np.concatenate(vertices), np.concatenate(faces), n_mould_faces=len(surface.faces))
-
-
-def is_hole(surface: Surface, loop: IntArray) -> bool:
-    """Whether a border turns backwards as a whole: about -2 pi for a hole, 0 for a tube's end, 2 pi for an outline."""
-    tails = surface.faces[loop // 3, loop % 3]
-    return float(np.sum(np.pi - surface.vertex_angle[tails])) < -np.pi
 
 
 def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[FloatArray, IntArray]:

@@ -87,7 +87,9 @@ def drape(
         raise FabricError(msg)
     extent = _checked_extent(extent)
     whole = mould.surface
-    seed = default_seed(whole) if seed is None else np.asarray(seed, dtype=np.float64)
+    if seed is None:
+        seed = whole.closest_point(default_seed(whole))[0].position(whole)
+    seed = np.asarray(seed, dtype=np.float64)
     if seed.shape != (3,) or not np.isfinite(seed).all():
         msg = f"seed {seed.tolist()} is not a point; give X,Y,Z in mm"
         raise StartError(msg)

@@ -7,7 +7,6 @@ import numpy as np
 from meshdrape.kernels.meet import spread_on_faces, stop_where_met
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
-from meshdrape.weave.collar import is_hole
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.status import NodeStatus
 
@@ -57,7 +56,7 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
 
 def _cannot_meet(mould: Surface) -> bool:
     """Whether the mould is a disk, holes apart, with too little curvature to bring a sheet back to itself."""
-    outlines = [loop for loop in mould.border_loops if not is_hole(mould, loop)]
+    outlines = [loop for loop in mould.border_loops if not mould.is_hole(loop)]
     if len(outlines) != 1:
         return False
     inner = ~mould.border_vertex

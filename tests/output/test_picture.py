@@ -137,7 +137,7 @@ def test_cells_are_drawn_on_the_side_of_the_cloth(tmp_path, cull, middle):
     square = np.array([[[0.0, 0, 0], [0, 10, 0], [10, 10, 0], [10, 0, 0]]])
     view, _ = fitted(np.eye(3), square[0], square[0], (50.0, 50.0), 100.0, (100.0, 100.0))
     stage = Stage(200, 200, view)
-    stage.add_faces(square, np.array([[0.0, 0, 1]]), (98, 164, 224, 255), cull=cull)
+    stage.add_faces(square, np.array([[0.0, 0, -1]]), (98, 164, 224, 255), cull=cull)
     (tmp_path / "square.png").write_bytes(stage.png())
     picture = read_png(tmp_path / "square.png")
     assert np.abs(picture[100, 100] - middle).max() < 12

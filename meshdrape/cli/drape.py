@@ -1,0 +1,192 @@
+"""meshdrape drape MOULD -o NET.ply: the main job."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import shlex
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from meshdrape.cli.main import DONE, FABRIC_MISSING
+from meshdrape.cli.options import add_mould_options, degrees, numbers, read_mould, spacing
+from meshdrape.cli.progress import Progress
+
+POINT = "a point X,Y,Z in mm"
+VECTOR = "a direction X,Y,Z"
+# libigl's audit may take this long, s, and stops at this many edges.
+AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_mould_options(parser)
+    parser.add_argument("-o", "--output", required=True, metavar="NET.ply", help="the net; its companions go beside it")
+    cloth = parser.add_argument_group("the cloth")
+    cloth.add_argument("--spacing", type=spacing, required=True, metavar="MM", help="node to node: 5, or WARP,WEFT")
+    cloth.add_argument("--initial-angle", type=degrees, default=math.pi / 2, metavar="DEG", help="warp to weft (90)")
+    cloth.add_argument(
+        "--locking-angle", type=degrees, default=math.radians(7), metavar="DEG", help="shear at which it locks (7)"
+    )
+    cloth.add_argument(
+        "--extent", type=numbers(4, "four lengths in mm: WARP-,WARP+,WEFT-,WEFT+"), metavar="A,B,C,D",
+        help="cloth from the seed: back and forth along warp, then weft",
+    )  # fmt: skip
+    start = parser.add_argument_group("the start")
+    start.add_argument("--seed", type=numbers(3, POINT), metavar="X,Y,Z", help="default: near the middle")
+    start.add_argument("--direction", type=numbers(3, VECTOR), metavar="X,Y,Z", help="warp; default: the long way")
+    start.add_argument("--flip-normal", action="store_true", help="lay the cloth on the other side of the tool")
+    out = parser.add_argument_group("the results")
+    out.add_argument(
+        "--reference", type=numbers(3, VECTOR), default=(1.0, 0.0, 0.0), metavar="X,Y,Z", help="zero of fibre angles (x)"
+    )
+    out.add_argument("--json", action="store_true", help="print the summary as JSON")
+    out.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    out.add_argument("--no-picture", action="store_true", help="do not draw NET.png")
+    out.add_argument("--threads", type=int, metavar="N", help="default: all cores; the net does not depend on it")
+
+
+def run(options: argparse.Namespace, arguments: list[str]) -> int:
+    """Drape, write every file, print the summary."""
+    from meshdrape.output.files import check_target
+    from meshdrape.weave.fabric import Fabric
+
+    net_path = Path(options.output)
+    check_target(net_path)
+    fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
+    clock = _Clock()
+    with Progress(options.quiet) as progress:
+        progress.stage("reading the mould")
+        mould = read_mould(options)
+        if options.flip_normal:
+            mould = mould.flipped()
+        clock.lap("mould")
+        _announce_compilation(options.quiet)
+
+        from meshdrape.weave import audit, drape, measure, read_off
+        from meshdrape.weave.balance import balance
+        from meshdrape.weave.summary import fabric_missing, summarise
+
+        clock.lap("imports")
+        progress.stage("draping")
+        net = drape(
+            mould,
+            fabric,
+            options.seed,
+            options.direction,
+            extent=options.extent,
+            threads=options.threads,
+            progress=progress.step,
+        )
+        clock.lap("drape")
+        progress.stage("measuring")
+        measures = measure(net)
+        progress.step(0)
+        field = read_off(measures, options.reference)
+        foretold = balance(measures)
+        clock.lap("measures")
+        audited = audit(net, AUDIT_EDGES, seconds=AUDIT_SECONDS)
+        clock.lap("audit")
+        progress.stage("writing")
+        progress.step(0)
+        files = _write(net, measures, field, net_path, picture=not options.no_picture)
+        clock.lap("files")
+        command = shlex.join(["meshdrape", *arguments])
+        summary = summarise(measures, field, audited, foretold, clock.stages(), command)
+
+        from meshdrape.output import json_text, write_json
+
+        json_path = net_path.with_suffix(".json")
+        write_json(summary, json_path)
+    if options.json:
+        sys.stdout.write(json_text(summary))
+    elif not options.quiet:
+        sys.stdout.write(_report(summary, [*files, json_path]))
+    return FABRIC_MISSING if fabric_missing(net) else DONE
+
+
+class _Clock:
+    """Time by stage."""
+
+    def __init__(self) -> None:
+        self._begun = self._last = time.perf_counter()
+        self._laps: dict[str, float] = {}
+
+    def lap(self, stage: str) -> None:
+        """End a stage."""
+        now = time.perf_counter()
+        self._laps[stage] = now - self._last
+        self._last = now
+
+    def stages(self) -> dict[str, float]:
+        """Seconds by stage, and in all."""
+        return {**self._laps, "total": time.perf_counter() - self._begun}
+
+
+def _announce_compilation(quiet: bool) -> None:
+    from meshdrape.kernels.cache import is_compiled
+
+    if not quiet and not is_compiled():
+        sys.stderr.write("meshdrape: compiling the kernels, once; this takes about half a minute\n")
+
+
+def _write(net: Any, measures: Any, field: Any, net_path: Path, picture: bool) -> list[Path]:
+    from meshdrape.output import draw_net, write_fibres_ply, write_mould_ply, write_ply
+
+    mould_path, fibres_path, picture_path = (
+        net_path.with_suffix(suffix) for suffix in (".mould.ply", ".fibres.ply", ".png")
+    )
+    write_ply(net, net_path, measures)
+    write_mould_ply(field, mould_path, net.fabric.locking_angle)
+    write_fibres_ply(net, fibres_path)
+    written = [net_path, mould_path, fibres_path]
+    if picture:
+        draw_net(net, measures, picture_path)
+        written.append(picture_path)
+    return written
+
+
+def _report(summary: dict[str, Any], files: list[Path]) -> str:
+    """The summary for people."""
+    mould, fabric, cloth, checked = summary["mould"], summary["fabric"], summary["cloth_mm"], summary["audit"]
+    size = " x ".join(f"{v:,.0f}" for v in mould["size_mm"])
+    tolerances = (
+        ""
+        if mould["angle_tolerance_deg"] is None
+        else f" at {mould['angle_tolerance_deg']:g} deg and {mould['chord_tolerance_mm']:g} mm"
+    )
+    spacing_mm = fabric["spacing_mm"]
+    woven = f"{spacing_mm[0]:g}" if spacing_mm[0] == spacing_mm[1] else f"{spacing_mm[0]:g} x {spacing_mm[1]:g}"
+    at = summary["max_shear_at"]
+    where = "" if at is None else f" at ({', '.join(f'{v:.1f}' for v in at)})"
+    if summary["max_shear_face"]:
+        where += f", face {summary['max_shear_face']}"
+    error = summary["audit_max_relative_error"]
+    rows = [
+        ("mould", f"{mould['file']}, {size} mm, {mould['triangles']:,} triangles{tolerances}"),
+        ("seed", f"({', '.join(f'{v:.3f}' for v in summary['seed'])}), {summary['seed_distance_mm']:.3g} mm from the one given"),
+        ("net", f"{summary['nodes']:,} nodes, {summary['cells']:,} cells, spacing {woven} mm"),
+        ("cloth", f"{cloth['warp']:,.0f} x {cloth['weft']:,.0f} mm, {cloth['area_mm2'] / 1e6:.3f} m2"),
+        ("coverage", f"{summary['coverage_percent']:.2f} % of the mould"),
+        ("max shear", f"{summary['max_shear_deg']:.3f} deg{where}"),
+        ("locking", f"{summary['over_locking_percent']:.2f} % of the area above {fabric['locking_angle_deg']:g} deg"),
+        ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg"),
+        ("balance", f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg"),
+        ("audit", f"{checked['n_edges']:,} edges by libigl, largest relative error {error:.1e}"),
+        ("time", ", ".join(f"{stage} {value:.2f} s" for stage, value in summary["seconds"].items())),
+    ]
+    if summary["warp_angle_deg"]:
+        angle = summary["warp_angle_deg"]
+        rows.insert(7, ("warp angle", f"{angle['min']:.2f} to {angle['max']:.2f} deg from the reference, mean {angle['mean']:.2f}"))
+    lines = [f"{name:>10}  {text}" for name, text in rows]
+    lines += [
+        f"{'face ' + str(face['id']):>10}  {face['name'] or ''} covered {face['coverage_percent']:.1f} %, "
+        f"max shear {face['max_shear_deg'] or 0:.3f} deg, {face['over_locking_percent']:.1f} % above locking"
+        for face in summary["faces"]
+    ]
+    lines += [f"{'note':>10}  {note}" for note in summary["notes"]]
+    lines += [f"{'WARNING':>10}  {warning}" for warning in summary["warnings"]]
+    lines += [f"{'wrote':>10}  {path}" for path in files]
+    return "\n".join(lines) + "\n"

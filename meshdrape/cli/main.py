@@ -1,0 +1,70 @@
+"""meshdrape COMMAND: one file a command, imported when it is called."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+from meshdrape import __version__
+from meshdrape.errors import MeshdrapeError
+
+DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
+
+COMMANDS = {
+    "drape": "lay a fabric on a mould and write the net",
+    "inspect": "list the faces of a mould and check its mesh",
+}
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors in one line."""
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        """Name what is wrong and where the help is; exit with 2."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    argv : list of str, optional
+        The arguments; default those of the process.
+
+    Returns
+    -------
+    int
+        0 done; 2 bad input, one line on stderr; 3 it ran, but fabric that should lie on the mould is missing;
+        130 interrupted.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    parser = _Parser(prog="meshdrape", description="Drape woven cloth over CAD and mesh moulds.")
+    parser.add_argument("--version", action="version", version=f"meshdrape {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", dest="command", required=True)
+    named = next((word for word in arguments if word in COMMANDS), None)
+    modules = {}
+    for name, does in COMMANDS.items():
+        command = commands.add_parser(name, help=does, description=does[0].upper() + does[1:] + ".")
+        if name == named:
+            modules[name] = importlib.import_module(f"meshdrape.cli.{name}")
+            modules[name].add_arguments(command)
+    try:
+        options = parser.parse_args(arguments)
+        return int(modules[options.command].run(options, arguments))
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    except MeshdrapeError as error:
+        sys.stderr.write(f"meshdrape: {' '.join(str(error).split())}\n")
+        return BAD_INPUT
+    except BrokenPipeError:
+        return DONE
+    except KeyboardInterrupt:
+        sys.stderr.write("meshdrape: interrupted; no file was left half written\n")
+        return INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

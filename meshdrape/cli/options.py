@@ -1,0 +1,92 @@
+"""Options that several commands share, and how their words become values."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from meshdrape.errors import FileError
+
+if TYPE_CHECKING:
+    from meshdrape.mould import Mould
+
+
+def numbers(count: int, what: str) -> Any:
+    """A converter for exactly `count` finite numbers separated by commas."""
+
+    def convert(text: str) -> tuple[float, ...]:
+        try:
+            values = tuple(float(part) for part in text.split(","))
+        except ValueError:
+            values = ()
+        if len(values) != count or not all(math.isfinite(value) for value in values):
+            msg = f"{text!r} is not {what}"
+            raise argparse.ArgumentTypeError(msg)
+        return values
+
+    return convert
+
+
+def spacing(text: str) -> float | tuple[float, float]:
+    """One spacing, or two separated by a comma: along warp and along weft."""
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) not in (1, 2):
+        msg = f"{text!r} is not a spacing in mm: give 5, or 5,4 for warp and weft"
+        raise argparse.ArgumentTypeError(msg)
+    return values[0] if len(values) == 1 else (values[0], values[1])
+
+
+def degrees(text: str) -> float:
+    """An angle in degrees, as radians."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        msg = f"{text!r} is not an angle in degrees"
+        raise argparse.ArgumentTypeError(msg)
+    return math.radians(value)
+
+
+def add_mould_options(parser: argparse.ArgumentParser) -> None:
+    """The mould and how it is read."""
+    parser.add_argument("mould", metavar="MOULD", help="STEP, BREP, STL, OBJ, PLY or OFF file, or a CadQuery script")
+    group = parser.add_argument_group("the mould")
+    group.add_argument("--faces", help='CAD faces to drape: a CadQuery selector (">Z") or ids ("1,3"; see inspect)')
+    group.add_argument("--unit", help="unit of a mesh file: mm (default), cm, m, um, in, ft")
+    group.add_argument("--chord-tolerance", type=float, metavar="MM", help="largest gap between facets and CAD face")
+    group.add_argument("--angle-tolerance", type=degrees, metavar="DEG", help="largest angle between facets")
+    group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
+    group.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter of a CadQuery script; repeatable"
+    )
+
+
+def read_mould(options: argparse.Namespace) -> Mould:
+    """The mould that the options name."""
+    from meshdrape.mould import read_mould as read
+
+    tolerances = {
+        name: value
+        for name in ("chord_tolerance", "angle_tolerance")
+        if (value := getattr(options, name)) is not None
+    }
+    parameters = {}
+    for word in options.set:
+        name, equals, value = word.partition("=")
+        if not equals or not name:
+            msg = f"--set {word}: give NAME=VALUE, such as --set span=14000"
+            raise FileError(msg)
+        parameters[name] = value
+    return read(
+        options.mould,
+        faces=options.faces,
+        unit=options.unit,
+        heal=options.heal,
+        parameters=parameters or None,
+        **tolerances,
+    )

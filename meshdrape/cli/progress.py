@@ -1,0 +1,57 @@
+"""A line on the terminal for what takes longer than two seconds."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+PATIENCE = 2.0
+
+
+class Progress:
+    """Stages of a command; a bar appears on a terminal once two seconds have gone by.
+
+    Parameters
+    ----------
+    quiet : bool
+        Never show anything.
+    """
+
+    def __init__(self, quiet: bool) -> None:
+        self._shown = not quiet and sys.stderr.isatty()
+        self._begun = time.perf_counter()
+        self._bar: Any = None
+        self._task: Any = None
+
+    def stage(self, name: str, total: int | None = None) -> None:
+        """Begin a stage; `total` steps where they can be counted."""
+        self._name, self._total = name, total
+        if self._bar is not None:
+            self._bar.update(self._task, description=name, total=total, completed=0)
+
+    def step(self, done: int) -> None:
+        """So many steps of the stage are done."""
+        if not self._shown or time.perf_counter() - self._begun < PATIENCE:
+            return
+        if self._bar is None:
+            from rich.console import Console
+            from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+            columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:,}"), TimeElapsedColumn())
+            self._bar = Progress(*columns, console=Console(stderr=True), transient=True)
+            self._task = self._bar.add_task(self._name, total=self._total)
+            self._bar.start()
+        self._bar.update(self._task, completed=done)
+
+    def close(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
