@@ -1,8 +1,8 @@
 """Cone: an open patch of a circular cone, symmetric about the plane y = 0, cloth on the outside.
 
-The apex is the origin, left out, and the axis is z. A point at slant distance rho from the apex and azimuth phi is
-(rho sin(a) cos(phi), rho sin(a) sin(phi), rho cos(a)) with a the half angle; on the flat sheet it lies at the
-same distance rho from the apex, at the angle phi sin(a).
+The apex is the origin, left out, and the axis is z. A point at slant distance rho from the apex and azimuth
+phi is (rho sin(a) cos(phi), rho sin(a) sin(phi), rho cos(a)) with a the half angle; on the flat sheet it lies
+at the same distance rho from the apex, at the angle phi sin(a).
 
 Lengths in millimetres. Facts, exact, with a = 25°, slant distances 300 to 1900 mm and an arc of 240°:
 
@@ -32,12 +32,12 @@ def build(
     slant_to: float = slant_to,
     arc_deg: float = arc_deg,
 ) -> cq.Workplane:
-    """The patch, one conical face with its normal away from the axis."""
+    """Build the patch, one conical face with its normal away from the axis."""
     if not 0 < half_angle_deg < 90:
         msg = f"half_angle_deg={half_angle_deg}: must lie between 0 and 90"
         raise ValueError(msg)
     if not 0 < slant_from < slant_to:
-        msg = f"slant_from={slant_from}, slant_to={slant_to}: must be positive and increase, the apex is left out"
+        msg = f"slant_from={slant_from}, slant_to={slant_to}: must be positive and increase"
         raise ValueError(msg)
     if not 0 < arc_deg < 360:
         msg = f"arc_deg={arc_deg}: must lie between 0 and 360, the patch is not a closed cone"

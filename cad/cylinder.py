@@ -1,7 +1,7 @@
-"""Cylinder: an open patch of the cylinder x^2 + y^2 = R^2, symmetric about the plane y = 0, cloth on the outside.
+"""Cylinder: an open patch of the cylinder x^2 + y^2 = R^2, cloth on the outside.
 
-The axis is z and the patch is centred on the point (R, 0, 0). A point at azimuth phi and height z lies on the
-flat sheet at (R phi, z).
+The axis is z and the patch is centred on the point (R, 0, 0), symmetric about the planes y = 0 and z = 0. A
+point at azimuth phi and height z lies on the flat sheet at (R phi, z).
 
 Lengths in millimetres. Facts, exact, with R = 500 mm, an arc of 180° and a length of 1800 mm:
 
@@ -22,7 +22,7 @@ arc_deg = 180.0  # azimuth covered
 
 
 def build(*, radius: float = radius, length: float = length, arc_deg: float = arc_deg) -> cq.Workplane:
-    """The patch, one cylindrical face with its normal away from the axis."""
+    """Build the patch, one cylindrical face with its normal away from the axis."""
     if not (radius > 0 and length > 0):
         msg = f"radius={radius}, length={length}: must be positive"
         raise ValueError(msg)

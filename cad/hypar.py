@@ -1,8 +1,8 @@
 """Hyperbolic paraboloid: the saddle z = k x y over a square centred on the origin, cloth on top.
 
-Both families of lines x = const and y = const are straight and lie in the surface; the two through the origin
-cross at right angles and are the natural start fibres. The face is exact, a bilinear patch. Its straight borders
-are divided into short edges: a tessellator puts no vertex inside a straight edge, and would else leave fans of
+The lines x = const and y = const are straight and lie in the surface; the two through the origin cross at
+right angles and are the natural start fibres. The face is exact, a bilinear patch. Its straight borders are
+divided into short edges: a tessellator puts no vertex inside a straight edge, and would else leave fans of
 slivers there whose normals are many degrees off.
 
 Lengths in millimetres. Facts, exact, with k = 0.001 mm⁻¹ and a side of 2600 mm:
@@ -10,8 +10,8 @@ Lengths in millimetres. Facts, exact, with k = 0.001 mm⁻¹ and a side of 2600 
 :Area: ∬ √(1 + k² (x² + y²)) dx dy = 9719334.434 mm²
 :Gaussian curvature: -k² / (1 + k² (x² + y²))², -1e-6 mm⁻² at the centre
 :Flat length: 2600 mm along x = 0 and y = 0, 4264.317 mm along each side
-:Shear: -26.66743° at fabric coordinates (1000, 1000) mm from the two lines through the origin (cells open), the
-    node there at (762.6122, 762.6122, 581.5774) mm
+:Shear: -26.66743° at fabric coordinates (1000, 1000) mm from the two lines through the origin (cells open),
+    the node there at (762.6122, 762.6122, 581.5774) mm
 :Source: smooth limit of the Chebyshev net, σ_uv = -K sin σ, solved to more digits than printed
 """
 
@@ -31,7 +31,7 @@ border_edges = 32  # pieces of each side
 
 
 def build(*, k: float = k, side: float = side, border_edges: int = border_edges) -> cq.Workplane:
-    """The patch, one bilinear face with its normal towards +z."""
+    """Build the patch, one bilinear face with its normal towards +z."""
     if not side > 0:
         msg = f"side={side}: must be positive"
         raise ValueError(msg)

@@ -31,7 +31,7 @@ side = 500.0  # of the square in x and y
 
 
 def build(*, side: float = side) -> cq.Workplane:
-    """The patch, one bicubic face with its normal towards +z."""
+    """Build the patch, one bicubic face with its normal towards +z."""
     if not side > 0:
         msg = f"side={side}: must be positive"
         raise ValueError(msg)

@@ -4,22 +4,30 @@ Run it after changing a script of this folder::
 
     python cad/make_samples.py
 
-The files depend on the scripts alone: the STEP header carries no time of writing, so a second run gives the same bytes.
+The STEP headers carry no time of writing: with the same scripts and the same Open CASCADE a second run gives
+the same bytes.
 """
 
 from __future__ import annotations
 
 import argparse
-import importlib
 import re
-import sys
 from dataclasses import dataclass, field
 from math import radians
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import cadquery as cq
+import cone
+import cube_corner
+import cylinder
+import hemisphere
+import hypar
+import krogh_double_curved
+import wing_spar
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
@@ -27,52 +35,45 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-HERE = Path(__file__).resolve().parent
-
 
 @dataclass(frozen=True)
 class Sample:
     """One mould to write: a script of this folder with parameters of its own."""
 
     name: str
-    script: str
+    script: ModuleType
     parameters: dict[str, Any] = field(default_factory=dict)
     chord_tolerance: float = 0.0  # of the STL, mm; 0 = STEP only
     angle_tolerance_deg: float = 0.0  # of the STL
 
-    def build(self) -> cq.Workplane:
-        """The shape, its faces tagged by name where the script names them."""
-        return self.module.build(**self.parameters)
-
-    @property
-    def module(self) -> Any:
-        """The script, imported."""
-        if str(HERE) not in sys.path:
-            sys.path.insert(0, str(HERE))
-        return importlib.import_module(self.script)
-
 
 SAMPLES = (
-    Sample("wing_spar", "wing_spar", chord_tolerance=0.1, angle_tolerance_deg=0.5),
-    Sample("wing_spar_block", "wing_spar", {"block": True}),
-    Sample("hemisphere", "hemisphere", chord_tolerance=0.5, angle_tolerance_deg=3.0),
-    Sample("cone", "cone", chord_tolerance=0.5, angle_tolerance_deg=3.0),
-    Sample("cylinder", "cylinder", chord_tolerance=0.1, angle_tolerance_deg=0.5),
-    Sample("hypar", "hypar", chord_tolerance=0.5, angle_tolerance_deg=3.0),
-    Sample("cube_corner", "cube_corner", chord_tolerance=0.1, angle_tolerance_deg=1.0),
-    Sample("krogh_double_curved", "krogh_double_curved", chord_tolerance=0.05, angle_tolerance_deg=2.0),
+    Sample("wing_spar", wing_spar, chord_tolerance=0.1, angle_tolerance_deg=0.5),
+    Sample("wing_spar_block", wing_spar, {"block": True}),
+    Sample("hemisphere", hemisphere, chord_tolerance=0.5, angle_tolerance_deg=3.0),
+    Sample("cone", cone, chord_tolerance=0.5, angle_tolerance_deg=3.0),
+    Sample("cylinder", cylinder, chord_tolerance=0.1, angle_tolerance_deg=0.5),
+    Sample("hypar", hypar, chord_tolerance=0.5, angle_tolerance_deg=3.0),
+    Sample("cube_corner", cube_corner, chord_tolerance=0.1, angle_tolerance_deg=1.0),
+    Sample("krogh_double_curved", krogh_double_curved, chord_tolerance=0.1, angle_tolerance_deg=5.0),
 )
+FACTS = ("Area", "Gaussian curvature", "Flat length", "Shear", "Source")  # fields of each script's docstring
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Write all files; the command line takes another folder."""
     parser = argparse.ArgumentParser(description="Write the sample moulds as STEP and STL.")
-    parser.add_argument("--folder", type=Path, default=HERE.parent / "samples", help="where to write")
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        default=Path(__file__).resolve().parent.parent / "samples",
+        help="where to write",
+    )
     folder: Path = parser.parse_args(arguments).folder
     folder.mkdir(parents=True, exist_ok=True)
     shapes = {}
     for sample in SAMPLES:
-        shape = shapes[sample.name] = sample.build()
+        shape = shapes[sample.name] = sample.script.build(**sample.parameters)
         write_step(shape, sample.name, folder / f"{sample.name}.step")
         if sample.chord_tolerance:
             write_stl(shape, sample, folder / f"{sample.name}.stl")
@@ -81,7 +82,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def write_step(shape: cq.Workplane, name: str, path: Path) -> None:
-    """Write the shape as one STEP part of that name, its tagged faces under the names of their tags, in mm."""
+    """Write the shape as one STEP part of that name, its tagged faces under their tags, in mm."""
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     part = tool.AddShape(shape.val().wrapped, False)
@@ -98,13 +99,19 @@ def write_step(shape: cq.Workplane, name: str, path: Path) -> None:
     header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
     header.SetName(TCollection_HAsciiString(path.name))
     header.SetTimeStamp(TCollection_HAsciiString("2000-01-01T00:00:00"))
-    writer.Write(str(path))
+    if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        msg = f"{path} cannot be written"
+        raise OSError(msg)
 
 
 def write_stl(shape: cq.Workplane, sample: Sample, path: Path) -> None:
-    """Write the shape's triangles as binary STL."""
+    """Write the shape's triangles as binary STL; the chord tolerance is absolute, in mm."""
     shape.val().exportStl(
-        str(path), tolerance=sample.chord_tolerance, angularTolerance=radians(sample.angle_tolerance_deg)
+        str(path),
+        tolerance=sample.chord_tolerance,
+        angularTolerance=radians(sample.angle_tolerance_deg),
+        relative=False,
+        parallel=False,
     )
 
 
@@ -117,50 +124,57 @@ def facts(docstring: str) -> dict[str, str]:
 
 
 def readme(shapes: dict[str, cq.Workplane], folder: Path) -> str:
-    """Text of the table beside the samples."""
+    """Text of the tables beside the samples."""
     lines = [
         "# Sample moulds",
         "",
-        "Written by `python cad/make_samples.py`; change the scripts in `cad/`, not the files here. Millimetres",
-        "throughout. Each is the open tool surface, drapable as it is, its normals on the cloth's side; only",
-        "`wing_spar_block.step` is a solid, to choose faces from.",
+        "Written by `python cad/make_samples.py`: change the scripts in `cad/`, not the files here.",
+        "Millimetres throughout. Each is the open tool surface, drapable as it is, its normals on the",
+        "cloth's side; only `wing_spar_block.step` is a solid, to choose faces from.",
         "",
         "## Exact facts",
         "",
-        "| mould | area | Gaussian curvature | flat length | shear | source |",
-        "|---|---|---|---|---|---|",
+        "Of the shapes as designed; a tessellation comes as near as its tolerances allow.",
+        "",
+        f"| mould | {' | '.join(name.lower() for name in FACTS)} |",
+        "|---|" + "---|" * len(FACTS),
     ]
-    scripts = {sample.script: sample for sample in SAMPLES}
-    for script, sample in scripts.items():
-        known = facts(sample.module.__doc__)
-        fields = ("Area", "Gaussian curvature", "Flat length", "Shear", "Source")
-        lines.append(f"| [{script}](../cad/{script}.py) | " + " | ".join(known[field] for field in fields) + " |")
+    for script in dict.fromkeys(sample.script for sample in SAMPLES):
+        known = facts(script.__doc__ or "")
+        cells = [f"[{script.__name__}](../cad/{script.__name__}.py)", *(known[name] for name in FACTS)]
+        lines.append(f"| {' | '.join(cells)} |")
     lines += [
         "",
         "## Files",
         "",
-        "STEP faces carry the names given here; ids count the faces in the order of the file, from 1.",
+        "Ids count the faces in the order of the STEP file, from 1; named faces have their name there.",
+        "The areas are those Open CASCADE integrates over the faces. STL files are binary, in single",
+        "precision.",
         "",
         "| STEP | CAD faces: id, name, kind, area in mm² | STL | chord, angle tolerance | triangles |",
         "|---|---|---|---|---|",
     ]
     for sample in SAMPLES:
-        shape = shapes[sample.name]
-        name_of = {tagged.val(): tag for tag, tagged in shape.ctx.tags.items()}
-        faces = "; ".join(
-            " ".join([str(id_), *([name_of[face]] if face in name_of else []), face.geomType().lower(), f"{face.Area():.1f}"])
-            for id_, face in enumerate(shape.val().Faces(), start=1)
-        )
-        row = [f"{sample.name}.step", faces, "-", "-", "-"]
+        step = folder / f"{sample.name}.step"
+        cells = [step.name, face_list(step, shapes[sample.name]), "", "", ""]
         if sample.chord_tolerance:
             stl = folder / f"{sample.name}.stl"
-            row[2:] = [
-                stl.name,
-                f"{sample.chord_tolerance:g} mm, {sample.angle_tolerance_deg:g}°",
-                str(int.from_bytes(stl.read_bytes()[80:84], "little")),
-            ]
-        lines.append("| " + " | ".join(row) + " |")
+            triangles = int.from_bytes(stl.read_bytes()[80:84], "little")
+            tolerances = f"{sample.chord_tolerance:g} mm, {sample.angle_tolerance_deg:g}°"
+            cells[2:] = [stl.name, tolerances, str(triangles)]
+        lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
+
+
+def face_list(step: Path, shape: cq.Workplane) -> str:
+    """Faces of a STEP file, read back: id, name where the shape written has a tag, kind, area."""
+    tags = {tagged.val(): f" {name}" for name, tagged in shape.ctx.tags.items()}
+    names = [tags.get(face, "") for face in shape.val().Faces()]
+    found = cq.importers.importStep(str(step)).faces().vals()
+    return "; ".join(
+        f"{id_}{name} {face.geomType()} {face.Area():.1f}"
+        for id_, (name, face) in enumerate(zip(names, found, strict=True), start=1)
+    )
 
 
 if __name__ == "__main__":

@@ -5,10 +5,10 @@ y runs along the span from 0, x along the chord, z up. Two profiles make the too
 - wing: z = g_w(y), from the crease at x = g_s(y) to x = g_s(y) + chord, normal towards +z;
 - spar: x = g_s(y), from the crease at z = g_w(y) down to z = g_w(y) - spar_height, normal towards -x.
 
-The cloth lies on the outside and folds over the crease, the curve (g_s(y), y, g_w(y)). Where g_s = g_w the mould is
-an origami fold and the net does not shear at all; how far f = g_s - g_w may depart from 0 is the question of the
-wing box. Both faces are ruled surfaces without twist, their rulings along x on the wing and along z on the spar, so
-both are developable to the last digit; the crease follows the profiles to 1e-4 mm.
+The cloth lies on the outside and folds over the crease, the curve (g_s(y), y, g_w(y)). Where g_s = g_w the
+mould is an origami fold and the net does not shear at all; how far f = g_s - g_w may depart from 0 is the
+question of the wing box. The rulings run along x on the wing and along z on the spar: both faces are
+developable to the last digit. The crease follows the profiles to 1e-4 mm.
 
 Profiles (lengths in mm, slopes without unit):
 
@@ -24,12 +24,12 @@ deviation      f: ``none``; ``linear``: c y; ``parabola``: c y² / (2 span); ``s
 
 Facts, exact, of the default: the real 14 m wing with a parabola of c = 0.1 between wing and spar:
 
-:Area: wing chord · 14098.238 mm = 42294714.458 mm², spar spar_height · 14173.590 mm = 14173590.122 mm²
+:Area: wing: chord · 14098.238 mm = 42294714.458 mm²; spar: spar_height · 14173.590 mm = 14173590.122 mm²
 :Gaussian curvature: 0 on both faces; the crease turns the net by ψ, tan α = g_s'/√(1 + g_w'²),
     tan β = g_w'/√(1 + g_s'²), ψ = β - α: 0° at y = 0, -5.68813° at y = 14000 mm
 :Flat length: wing edge 14098.238 mm, spar edge 14173.590 mm, crease 14270.052 mm
-:Shear: sheet laid undeformed on the wing, spacing 20 mm: at most 3.008° where rows come from the wing and 2.134°
-    where they start on the left-most spar ribbon
+:Shear: sheet laid undeformed on the wing, spacing 20 mm: at most 3.008° where rows come from the wing and
+    2.134° where they start on the left-most spar ribbon
 :Source: the net on the two unfolded sheets, no mesh involved
 """
 
@@ -78,11 +78,18 @@ def build(
     fillet_radius: float = fillet_radius,
     block: bool = block,
 ) -> cq.Workplane:
-    """Open shell of the faces tagged ``wing``, ``spar`` and, with a radius, ``fillet``; or the block they bound.
+    """Build the open shell of ``wing``, ``spar`` and, with a radius, ``fillet``; or the block they bound.
 
-    The block goes on below the spar with ``skirt``, down to a flat ``floor``, and has ``back``, ``root`` and ``tip``.
+    The faces are tagged by these names. The block goes on below the spar with ``skirt``, down to a flat
+    ``floor``, and has ``back``, ``root`` and ``tip``.
     """
-    sizes = {"span": span, "chord": chord, "spar_height": spar_height, "wavelength": wavelength, "length": length}
+    sizes = {
+        "span": span,
+        "chord": chord,
+        "spar_height": spar_height,
+        "wavelength": wavelength,
+        "length": length,
+    }
     for name, size in sizes.items():
         if not size > 0:
             msg = f"{name}={size}: must be positive"
@@ -93,14 +100,15 @@ def build(
     g_w = named_profile("wing_profile", wing_profile, wing_a, wing_radius, span)
     f = named_deviation(deviation, c, span, wavelength, length)
     if spar_profile == "origami":
-
-        def g_s(y: np.ndarray) -> np.ndarray:
-            return g_w(y) + f(y)
+        base = g_w
     else:
-        g_s = named_profile("spar_profile", spar_profile, spar_a, spar_radius, span)
+        base = named_profile("spar_profile", spar_profile, spar_a, spar_radius, span)
         if deviation != "none":
             msg = f"spar_profile={spar_profile!r} is all of g_s: set deviation to 'none', not {deviation!r}"
             raise ValueError(msg)
+
+    def g_s(y: np.ndarray) -> np.ndarray:
+        return base(y) + f(y)
 
     faces = block_faces(g_w, g_s, span, chord, spar_height)
     solid = cq.Solid.makeSolid(cq.Shell.makeShell(list(faces.values())))
@@ -118,7 +126,7 @@ def build(
 
 
 def named_profile(parameter: str, name: str, a: float, radius: float, span: float) -> Profile:
-    """g(y) of a profile that stands by itself, mm."""
+    """Return g(y) of a profile that stands by itself, mm."""
     if name == "real":
         slope, decaying_slope, decay = 0.047227544, 0.220721648, 3731.291642
         return lambda y: slope * y + decaying_slope * decay * (1 - np.exp(-y / decay))
@@ -137,7 +145,7 @@ def named_profile(parameter: str, name: str, a: float, radius: float, span: floa
 
 
 def named_deviation(name: str, c: float, span: float, wavelength: float, length: float) -> Profile:
-    """f(y) = g_s - g_w, mm, 0 at y = 0."""
+    """Return f(y) = g_s - g_w, mm, 0 at y = 0."""
     turn = 2 * np.pi
     known: dict[str, Profile] = {
         "none": lambda y: 0 * y,
@@ -155,7 +163,7 @@ def named_deviation(name: str, c: float, span: float, wavelength: float, length:
 
 
 def spanwise_edge(x: Profile, z: Profile, span: float) -> cq.Edge:
-    """Cubic spline through (x(y), y, z(y)), its parameter y itself, within 1e-4 mm of the profiles."""
+    """Interpolate (x(y), y, z(y)) by a cubic spline of parameter y, within 1e-4 mm of the profiles."""
     step = 1e-20  # derivative by a complex step: exact to round-off
     ends = [cq.Vector((x(y).imag / step), 1.0, z(y).imag / step) for y in np.array([0, span]) + 1j * step]
     for intervals in (32, 64, 128, 256, 512, 1024, 2048):
@@ -166,15 +174,17 @@ def spanwise_edge(x: Profile, z: Profile, span: float) -> cq.Edge:
         found = np.array([p.toTuple() for p in edge.positions(between, mode="parameter")])
         if np.abs(found - np.stack([x(between), between, z(between)], axis=-1)).max() < 1e-4:
             return edge
-    msg = f"the profiles change too fast along the span of {span} mm: lengthen wavelength or length, or lessen c"
+    msg = f"the profiles change too fast along the span of {span} mm: raise wavelength or length, or lower c"
     raise ValueError(msg)
 
 
-def block_faces(g_w: Profile, g_s: Profile, span: float, chord: float, spar_height: float) -> dict[str, cq.Face]:
-    """Faces of the tool block by name, wing and spar first.
+def block_faces(
+    g_w: Profile, g_s: Profile, span: float, chord: float, spar_height: float
+) -> dict[str, cq.Face]:
+    """Make the faces of the tool block by name, wing and spar first.
 
-    Ruled B-spline faces rather than extrusions: between two equal curves a tessellator then puts vertices on the
-    curves alone, its edges follow the rulings, and the facets are as developable as the face.
+    Ruled B-spline faces rather than extrusions: between two equal curves a tessellator then puts vertices on
+    the curves alone, its edges follow the rulings, and the facets are as developable as the face.
     """
     floor_z = g_w(np.linspace(0, span, 1001)).min() - 1.2 * spar_height
     crease = spanwise_edge(g_s, g_w, span)
@@ -201,8 +211,10 @@ def block_faces(g_w: Profile, g_s: Profile, span: float, chord: float, spar_heig
 def with_fillet(
     solid: cq.Solid, faces: dict[str, cq.Face], fillet_radius: float
 ) -> tuple[cq.Solid, dict[str, cq.Face]]:
-    """The block with the edge between wing and spar rounded, and its faces by name."""
-    crease = next(edge for edge in faces["wing"].Edges() if any(edge.isSame(e) for e in faces["spar"].Edges()))
+    """Round the edge between wing and spar; return the block and its faces by name."""
+    crease = next(
+        edge for edge in faces["wing"].Edges() if any(edge.isSame(e) for e in faces["spar"].Edges())
+    )
     rounding = BRepFilletAPI_MakeFillet(solid.wrapped)
     rounding.Add(fillet_radius, crease.wrapped)
     rounding.Build()

@@ -35,3 +35,32 @@ class NetError(MeshdrapeError):
 
 class MissingLibraryError(MeshdrapeError):
     """A library of the system that a dependency needs and the machine does not have."""
+
+
+_DEBIAN_PACKAGE = {
+    "libEGL.so.1": "libegl1",
+    "libGL.so.1": "libgl1",
+    "libGLU.so.1": "libglu1-mesa",
+    "libICE.so.6": "libice6",
+    "libOpenGL.so.0": "libopengl0",
+    "libSM.so.6": "libsm6",
+    "libX11.so.6": "libx11-6",
+    "libXext.so.6": "libxext6",
+    "libXrender.so.1": "libxrender1",
+    "libfontconfig.so.1": "libfontconfig1",
+    "libgomp.so.1": "libgomp1",
+    "libxcb.so.1": "libxcb1",
+}
+
+
+def missing_library(error: ImportError) -> MissingLibraryError:
+    """Return the error to raise for a dependency that cannot be imported, with the package that cures it."""
+    reason = " ".join(str(error).split())
+    library = reason.partition(":")[0]
+    if library in _DEBIAN_PACKAGE:
+        return MissingLibraryError(f"{library} is missing; apt-get install {_DEBIAN_PACKAGE[library]}")
+    if ".so" in library:
+        return MissingLibraryError(f"{library} is missing; apt-get install the package that has it (apt-file search {library})")
+    if error.name:
+        return MissingLibraryError(f"the Python package {error.name} is missing; pip install {error.name}")
+    return MissingLibraryError(f"a dependency cannot be imported ({reason}); install meshdrape anew")

@@ -290,9 +290,11 @@ def _unfold(surface: Surface) -> Unfolding:
     crossing[..., 1] = s
     crossing[..., 2] = middle[g, l, 0] - (c * middle[..., 0] - s * middle[..., 1])
     crossing[..., 3] = middle[g, l, 1] - (s * middle[..., 0] + c * middle[..., 1])
+    line, crossing = line.reshape(m, 9), crossing.reshape(m, 12)
     return Unfolding(
-        line=line.reshape(m, 9),
-        crossing=crossing.reshape(m, 12),
+        plane=np.concatenate([line, crossing, corner], axis=1),
+        line=line,
+        crossing=crossing,
         neighbour=neighbour.astype(np.int32),
         corner=corner,
         frame=np.concatenate([surface.vertices[surface.faces[:, 0]], e1, e2], axis=1),

@@ -7,6 +7,7 @@ a Chebyshev net (characteristic initial values on both generators) where there i
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -242,11 +243,6 @@ class Crease:
         legs = self.crossing(WING, y) - p, q - self.crossing(SPAR, y)
         return float(np.hypot(*legs[0]) + np.hypot(*legs[1])), legs[1] / np.hypot(*legs[1]), y
 
-    def in_space(self, side: int, p: FloatArray) -> FloatArray:
-        """A place of one side's plane in space, (3,)."""
-        y = float(self.y_at_arc[side](p[1]))
-        return np.array([p[0], y, self.profile[0](np.float64(y))] if side == WING else [self.profile[1](np.float64(y)), y, p[0]])
-
 
 class CreaseNet:
     """Exact discrete net laid undeformed on the wing, columns at wing arcs i spacing, rows at x = (j + 1/2) spacing.
@@ -277,17 +273,17 @@ class CreaseNet:
             else:
                 self.side[0, k] = SPAR
                 self.place[0, k] = -self.x[k] * np.array([-np.cos(gamma), np.sin(gamma)])
+        y = crease.y_at_arc[WING](np.arange(n) * spacing)
+        on_wing = self.x >= crease.profile[SPAR](y)[:, None]
         for i in range(1, n):
+            self.place[i] = np.stack([self.x, np.full(rows, i * spacing)], axis=1)
             for k in reversed(range(rows)):
-                self._put(i, k)
+                if not on_wing[i, k]:
+                    self._put(i, k, float(y[i]))
         self._measure(from_wing)
 
-    def _put(self, i: int, k: int) -> None:
-        spot = np.array([self.x[k], i * self.spacing])
-        y = float(self.crease.y_at_arc[WING](spot[1]))
-        if spot[0] >= self.crease.crossing(WING, y)[0]:
-            self.place[i, k] = spot
-            return
+    def _put(self, i: int, k: int, y: float) -> None:
+        """Place a node of the spar; y is where its column would cross the crease."""
         self.side[i, k] = SPAR
         a, b, d = (i - 1, k), (i, k + 1), (i - 1, k + 1)
         if self.side[a] and self.side[b] and self.side[d]:
@@ -322,15 +318,18 @@ class CreaseNet:
         fed = np.where(from_wing[:-1] & from_wing[1:], 2, np.where(from_wing[:-1] | from_wing[1:], -1, 1))
         self.region = np.where(count == 0, 0, np.where(count == 4, fed[None, :], -1))
 
-    @property
+    @cached_property
     def node(self) -> FloatArray:
         """Nodes in space, (n, rows, 3)."""
-        out = np.empty((*self.side.shape, 3))
-        for at in np.ndindex(self.side.shape):
-            out[at] = self.crease.in_space(int(self.side[at]), self.place[at])
-        return out
+        sides = []
+        for side, (u, v) in ((WING, (0, 2)), (SPAR, (2, 0))):
+            y = self.crease.y_at_arc[side](self.place[..., 1])
+            out = np.stack([y, y, y], axis=-1)
+            out[..., u], out[..., v] = self.place[..., 0], self.crease.profile[side](y)
+            sides.append(out)
+        return np.where((self.side == WING)[..., None], *sides)
 
-    @property
+    @cached_property
     def height(self) -> FloatArray:
         """How far below the crease each node of the spar lies, (n, rows); negative on the wing."""
         y = self.crease.y_at_arc[SPAR](self.place[..., 1])

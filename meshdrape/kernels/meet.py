@@ -11,7 +11,7 @@ MET_ITSELF = 4
 # Sheets are told apart by how far they lie from each other across the mould, in spacings, and by their normals.
 THICKNESS = 0.25
 # A single sheet's nodes on one face stay within this many face diameters, in spacings, of each other.
-WINDOW = 4.0
+WINDOW = 8.0
 
 
 @njit(cache=True, error_model="numpy")

@@ -19,7 +19,7 @@ FOLD_COSINE = math.cos(math.radians(1.0))
 
 
 @njit(cache=True, error_model="numpy")
-def place(mesh, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance):
+def place(plane, neighbour, frame, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance):
     """Point at geodesic distance wa from A and wb from B, near the ends of the two given paths.
 
     Both paths are walked and brought into one plane, where the ends of all paths that cross the same triangles lie
@@ -34,11 +34,11 @@ def place(mesh, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance)
         Node; directions at A and at B; directions in which the two paths arrive, in the frame of the node's face.
     """
     iterations = 0
-    code, f1, ax, ay, px, py = walk(mesh, fa, xa, ya, ux, uy, wa)
+    code, f1, ax, ay, px, py = walk(plane, neighbour, fa, xa, ya, ux, uy, wa)
     if code != WALKED:
         return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, px, py, iterations
     while True:
-        code, f2, bx, by, qx, qy = walk(mesh, fb, xb, yb, vx, vy, wb)
+        code, f2, bx, by, qx, qy = walk(plane, neighbour, fb, xb, yb, vx, vy, wb)
         if code != WALKED:
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
         x1 = ax + wa * px
@@ -46,11 +46,11 @@ def place(mesh, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance)
         if f1 != f2:
             shared = False
             for k in range(3):
-                other = mesh.neighbour[f2, k]
+                other = neighbour[f2, k]
                 if other >= 0 and other // 3 == f1:
-                    c = mesh.crossing[f2, 4 * k]
-                    s = mesh.crossing[f2, 4 * k + 1]
-                    bx, by = c * bx - s * by + mesh.crossing[f2, 4 * k + 2], s * bx + c * by + mesh.crossing[f2, 4 * k + 3]
+                    c = plane[f2, 9 + 4 * k]
+                    s = plane[f2, 10 + 4 * k]
+                    bx, by = c * bx - s * by + plane[f2, 11 + 4 * k], s * bx + c * by + plane[f2, 12 + 4 * k]
                     qx, qy = c * qx - s * qy, s * qx + c * qy
                     shared = True
                     break
@@ -61,10 +61,10 @@ def place(mesh, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance)
             y2 = by + wb * qy
             gap2 = (x2 - x1) ** 2 + (y2 - y1) ** 2
         else:
-            gap2, turn_a, turn_b = _gap_in_space(mesh, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb)
+            gap2, turn_a, turn_b = _gap_in_space(frame, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb)
         if gap2 <= tolerance * tolerance:
             if not shared:
-                qx, qy = turn_into(mesh, f2, qx, qy, f1)
+                qx, qy = turn_into(plane, neighbour, frame, f2, qx, qy, f1)
             if abs(px * qx + py * qy) > FOLD_COSINE or (px * qy - py * qx) * side < 0.0:
                 return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             return PLACED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
@@ -108,16 +108,16 @@ def place(mesh, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance)
         sb /= size
         ux, uy = ca * ux - sa * uy, sa * ux + ca * uy
         vx, vy = cb * vx - sb * vy, sb * vx + cb * vy
-        code, f1, ax, ay, px, py = walk(mesh, fa, xa, ya, ux, uy, wa)
+        code, f1, ax, ay, px, py = walk(plane, neighbour, fa, xa, ya, ux, uy, wa)
         if code != WALKED:
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
 
 
 @njit(cache=True, error_model="numpy")
-def _gap_in_space(mesh, f1, x1, y1, px, py, w1, f2, x2, y2, qx, qy, w2):
+def _gap_in_space(frame, f1, x1, y1, px, py, w1, f2, x2, y2, qx, qy, w2):
     """Squared gap between two ends on faces that share no edge, and the two small turns that close it."""
-    a = mesh.frame[f1]
-    b = mesh.frame[f2]
+    a = frame[f1]
+    b = frame[f2]
     gap2 = 0.0
     m11 = 0.0
     m12 = 0.0

@@ -78,8 +78,8 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
         ex = ox
         ey = oy
     else:
-        _, face, _, _, ex, ey = walk(mesh, tail_face, net.xy[ti, tj, 0], net.xy[ti, tj, 1], ox, oy, length)
-        ex, ey = turn_into(mesh, face, ex, ey, head_face)
+        _, face, _, _, ex, ey = walk(mesh.plane, mesh.neighbour, tail_face, net.xy[ti, tj, 0], net.xy[ti, tj, 1], ox, oy, length)
+        ex, ey = turn_into(mesh.plane, mesh.neighbour, mesh.frame, face, ex, ey, head_face)
     if outward:
         return sx, sy, ex, ey
     return -ex, -ey, -sx, -sy
@@ -132,25 +132,34 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
     report : (4,) int64
         Gets: nodes placed, iterations, and the (i, j) of a node that did not converge.
 
+    A tile lies in one quadrant, so every edge runs outward, from the parent, its tail, to the node.
+
     Returns
     -------
     bool
         True if the tile is done; False if it stopped at report[2:], marked NOT_CONVERGED, and must be called again
         once that node is settled.
     """
+    # single arrays for the hot loop: a call with a whole table costs more than what it does
+    plane = mesh.plane
+    neighbour = mesh.neighbour
+    frame = mesh.frame
+    rim = mesh.rim
     face = net.face
     xy = net.xy
+    warp_out = net.warp_out
+    weft_out = net.weft_out
     status = net.status
+    # directions in which the weft edges of the row before arrive, (0, 0) where not known
+    arrived = np.zeros((j_count, 2))
     i0 = start.index[0]
     j0 = start.index[1]
     tolerance2 = tolerance * tolerance
     side = float(si * sj)
-    line = mesh.line
     for a in range(i_count):
         i = i_first + si * a
         ia = i - si
         warp_at = min(i, ia)
-        warp_sign = 1.0 if (i - i0) * si > 0 else -1.0
         # direction in which the warp edge D-B arrives at B; unknown at the start of a row
         known = False
         rx = 0.0
@@ -158,6 +167,11 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
         for b in range(j_count):
             j = j_first + sj * b
             jb = j - sj
+            # of the weft edge D-A at A; then of B-C at C, for the next row
+            hx = arrived[b, 0]
+            hy = arrived[b, 1]
+            arrived[b, 0] = 0.0
+            arrived[b, 1] = 0.0
             if status[i, j] != NOT_REACHED:
                 known = False
                 continue
@@ -195,20 +209,20 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 gy = yb + weft * vy - y
                 if (
                     gx * gx + gy * gy <= tolerance2
-                    and line[fa, 0] * x + line[fa, 1] * y >= line[fa, 2]
-                    and line[fa, 3] * x + line[fa, 4] * y >= line[fa, 5]
-                    and line[fa, 6] * x + line[fa, 7] * y >= line[fa, 8]
+                    and plane[fa, 0] * x + plane[fa, 1] * y >= plane[fa, 2]
+                    and plane[fa, 3] * x + plane[fa, 4] * y >= plane[fa, 5]
+                    and plane[fa, 6] * x + plane[fa, 7] * y >= plane[fa, 8]
                 ):
                     face[i, j] = fa
                     xy[i, j, 0] = x
                     xy[i, j, 1] = y
-                    net.warp_out[warp_at, j, 0] = warp_sign * ux
-                    net.warp_out[warp_at, j, 1] = warp_sign * uy
-                    k = j if sj < 0 else jb
-                    outward = (j > j0) if sj > 0 else (j < j0)
-                    net.weft_out[i, k, 0] = vx if outward else -vx
-                    net.weft_out[i, k, 1] = vy if outward else -vy
-                    if mesh.rim[fa] < 0:
+                    warp_out[warp_at, j, 0] = ux
+                    warp_out[warp_at, j, 1] = uy
+                    weft_out[i, min(j, jb), 0] = vx
+                    weft_out[i, min(j, jb), 1] = vy
+                    arrived[b, 0] = vx
+                    arrived[b, 1] = vy
+                    if rim[fa] < 0:
                         status[i, j] = PLACED
                     else:
                         status[i, j] = OFF_MOULD if off_mould(mesh, fa, x, y, slack) else PLACED
@@ -218,11 +232,20 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                     ry = uy
                     continue
             # first guess: a rhombus of no curvature, D's edges carried along D-A and D-B
-            px, py, ex, ey = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
-            qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
-            if known:
+            px = warp_out[warp_at, jb, 0]
+            py = warp_out[warp_at, jb, 1]
+            qx = weft_out[ia, min(j, jb), 0]
+            qy = weft_out[ia, min(j, jb), 1]
+            if known and px * px + py * py < 2.0 and not at_seed:
                 ex = rx
                 ey = ry
+            else:
+                px, py, ex, ey = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
+            if hx * hx + hy * hy > 0.5 and qx * qx + qy * qy < 2.0 and not at_seed:
+                gx = hx
+                gy = hy
+            else:
+                qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
             if at_seed:
                 half = _half_fibre(si, sj)
                 # quadrants counter-clockwise; weft seen from warp is left of it where si and sj agree
@@ -244,7 +267,7 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
             vx = c * ex + s * ey
             vy = c * ey - s * ex
             code, f, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations = place(
-                mesh, fa, xa, ya, ux, uy, warp, fb, xb, yb, vx, vy, weft, side, tolerance
+                plane, neighbour, frame, fa, xa, ya, ux, uy, warp, fb, xb, yb, vx, vy, weft, side, tolerance
             )
             report[1] += iterations
             if code == PLACED:
@@ -252,14 +275,23 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 face[i, j] = f
                 xy[i, j, 0] = x
                 xy[i, j, 1] = y
-                keep_edge(net, start, WARP, ia, j, si, ux, uy, px, py)
-                keep_edge(net, start, WEFT, i, jb, sj, vx, vy, qx, qy)
-                status[i, j] = OFF_MOULD if off_mould(mesh, f, x, y, slack) else PLACED
+                warp_out[warp_at, j, 0] = ux
+                warp_out[warp_at, j, 1] = uy
+                weft_out[i, min(j, jb), 0] = vx
+                weft_out[i, min(j, jb), 1] = vy
+                arrived[b, 0] = qx
+                arrived[b, 1] = qy
+                status[i, j] = PLACED
+                if rim[f] >= 0 and off_mould(mesh, f, x, y, slack):
+                    status[i, j] = OFF_MOULD
                 known = True
                 rx = px
                 ry = py
             else:
                 known = False
+                if status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD:
+                    # the extension is no mould: what fails on it is lost to it, not to the cloth
+                    code = OUTSIDE
                 status[i, j] = code
                 if code == NOT_CONVERGED:
                     face[i, j] = f
@@ -336,7 +368,7 @@ def _step(mesh, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, r
     size = math.sqrt(dx * dx + dy * dy)
     dx /= size
     dy /= size
-    code, f, x, y, ex, ey = walk(mesh, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length)
+    code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length)
     if code != WALKED:
         return OUTSIDE
     report[0] += 1

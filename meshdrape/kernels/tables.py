@@ -17,6 +17,8 @@ class Unfolding(NamedTuple):
     Invariants (kept by :class:`meshdrape.surface.Surface`): manifold, consistently oriented, no zero area.
     """
 
+    plane: FloatArray
+    """(m, 24) `line`, `crossing` and `corner` of each face side by side: what a walk reads, in three cache lines."""
     line: FloatArray
     """(m, 9) three edges as (nx, ny, o): unit inward normal and offset; nx x + ny y - o is the height above it."""
     crossing: FloatArray

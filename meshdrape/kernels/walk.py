@@ -12,11 +12,17 @@ MAX_CROSSINGS = 100_000
 
 
 @njit(cache=True, error_model="numpy")
-def walk(mesh, face, x, y, dx, dy, length):
+def walk(plane, neighbour, face, x, y, dx, dy, length):
     """Walk straight on for `length` from (x, y) in `face`, in the unit direction (dx, dy).
 
     Instead of stepping from edge to edge the start itself is carried into each new frame, so round-off grows
-    only by one rigid motion a crossing and the start's image is at hand for the circles of `place`.
+    only by one rigid motion a crossing and the start's image is at hand for the circles of `place`. Which edge is
+    next is a question of sides, answered without a division.
+
+    Parameters
+    ----------
+    plane, neighbour
+        Of `Unfolding`; handed over singly, for a call with all its arrays costs more than the walk.
 
     Returns
     -------
@@ -24,38 +30,64 @@ def walk(mesh, face, x, y, dx, dy, length):
         Face where the path ends; image of the start and the direction in its frame: the end is
         (x + length dx, y + length dy).
     """
-    entered = -1
-    line = mesh.line
-    crossing = mesh.crossing
+    # first face: which edges the end lies beyond
+    tx = x + length * dx
+    ty = y + length * dy
+    exit_edge = -1
+    worst = 0.0
+    second = -1
+    for k in range(3):
+        height = plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty - plane[face, 3 * k + 2]
+        if height < 0.0:
+            if exit_edge >= 0:
+                second = exit_edge if height < worst else k
+            if height < worst:
+                worst = height
+                exit_edge = k
+    if exit_edge < 0:
+        return WALKED, face, x, y, dx, dy
+    if second >= 0:
+        # beyond two: the corner between them decides, by the side on which the line passes it
+        v = second if (exit_edge + 1) % 3 == second else exit_edge
+        cx = 0.0
+        cy = 0.0
+        if v == 1:
+            cx = plane[face, 21]
+        elif v == 2:
+            cx = plane[face, 22]
+            cy = plane[face, 23]
+        exit_edge = (v + 2) % 3 if dx * (cy - y) - dy * (cx - x) > 0.0 else v
     for _ in range(MAX_CROSSINGS):
-        exit_at = math.inf
-        exit_edge = -1
-        for k in range(3):
-            if k == entered:
-                continue
-            rate = line[face, 3 * k] * dx + line[face, 3 * k + 1] * dy
-            if rate < 0.0:
-                height = line[face, 3 * k] * x + line[face, 3 * k + 1] * y - line[face, 3 * k + 2]
-                at = -height / rate
-                if at < exit_at:
-                    exit_at = at
-                    exit_edge = k
-        if length <= exit_at:
-            return WALKED, face, x, y, dx, dy
-        code = mesh.neighbour[face, exit_edge]
+        code = neighbour[face, exit_edge]
         if code < 0:
             return LEFT_SURFACE, face, x, y, dx, dy
-        c = crossing[face, 4 * exit_edge]
-        s = crossing[face, 4 * exit_edge + 1]
-        x, y = c * x - s * y + crossing[face, 4 * exit_edge + 2], s * x + c * y + crossing[face, 4 * exit_edge + 3]
+        at = 9 + 4 * exit_edge
+        c = plane[face, at]
+        s = plane[face, at + 1]
+        x, y = c * x - s * y + plane[face, at + 2], s * x + c * y + plane[face, at + 3]
         dx, dy = c * dx - s * dy, s * dx + c * dy
         face = code // 3
         entered = code - 3 * face
+        # in over one edge, out over the next where the far corner lies to the left, over the one before where not
+        cx = 0.0
+        cy = 0.0
+        if entered == 0:
+            cx = plane[face, 22]
+            cy = plane[face, 23]
+        elif entered == 2:
+            cx = plane[face, 21]
+        exit_edge = entered + 1 if dx * (cy - y) - dy * (cx - x) > 0.0 else entered + 2
+        if exit_edge > 2:
+            exit_edge -= 3
+        at = 3 * exit_edge
+        height = plane[face, at] * (x + length * dx) + plane[face, at + 1] * (y + length * dy) - plane[face, at + 2]
+        if height >= 0.0:
+            return WALKED, face, x, y, dx, dy
     return LEFT_SURFACE, face, x, y, dx, dy
 
 
 @njit(cache=True, error_model="numpy")
-def turn_into(mesh, source, dx, dy, target):
+def turn_into(plane, neighbour, frame, source, dx, dy, target):
     """Direction (dx, dy) of face `source` in the frame of face `target`, which holds the same point.
 
     Neighbours are unfolded; across a vertex, where unfolding depends on the way round, the direction in space is
@@ -64,13 +96,13 @@ def turn_into(mesh, source, dx, dy, target):
     if source == target:
         return dx, dy
     for k in range(3):
-        code = mesh.neighbour[source, k]
+        code = neighbour[source, k]
         if code >= 0 and code // 3 == target:
-            c = mesh.crossing[source, 4 * k]
-            s = mesh.crossing[source, 4 * k + 1]
+            c = plane[source, 9 + 4 * k]
+            s = plane[source, 10 + 4 * k]
             return c * dx - s * dy, s * dx + c * dy
-    a = mesh.frame[source]
-    b = mesh.frame[target]
+    a = frame[source]
+    b = frame[target]
     vx = dx * a[3] + dy * a[6]
     vy = dx * a[4] + dy * a[7]
     vz = dx * a[5] + dy * a[8]

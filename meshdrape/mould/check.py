@@ -118,8 +118,8 @@ def as_arrays(vertices: ArrayLike, triangles: ArrayLike, factor: float = 1.0) ->
     if len(bad):
         first = int(bad[0])
         msg = (
-            f"vertices[{first}] is {at(coordinates[first])}: {counted(len(bad), 'vertex')} not finite or farther out "
-            f"than {FARTHEST:g} mm; export the mesh anew"
+            f"vertices[{first}] is {at(coordinates[first])}: {counted(len(bad), 'vertex')} not finite "
+            f"or farther out than {FARTHEST:g} mm; export the mesh anew"
         )
         raise MouldError(msg)
     return factor * coordinates, np.array(corners, dtype=np.int64)

@@ -55,7 +55,7 @@ class CadFace:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mould:
-    """The tool surface cloth is draped over; its normal side is the one the triangles run counter-clockwise about.
+    """The tool surface cloth is draped over, on the side its triangles run counter-clockwise about.
 
     Read one from a file with :func:`meshdrape.read_mould`, or make one with :meth:`from_arrays`, which checks
     the mesh. The arrays are read-only.
@@ -104,7 +104,7 @@ class Mould:
 
     @classmethod
     def from_arrays(cls, vertices: ArrayLike, triangles: ArrayLike, unit: str = "mm") -> Mould:
-        """The mould of the given triangles, in their order; vertices that no triangle uses are dropped.
+        """Return the mould of the given triangles, in their order; vertices of no triangle are dropped.
 
         Parameters
         ----------
@@ -117,9 +117,9 @@ class Mould:
         Raises
         ------
         MouldError
-            The arrays are of the wrong shape or type, an index is out of range, a coordinate is not finite, there
-            are no triangles, or the mesh has faults (:class:`~meshdrape.mould.check.FaultKind`) no net can be
-            laid over.
+            The arrays are of the wrong shape or type, an index is out of range, a coordinate is not finite,
+            there are no triangles, or the mesh has faults no net can be laid over
+            (:class:`~meshdrape.mould.check.FaultKind`).
         """
         factor = millimetres(unit)
         checked, corners = as_arrays(vertices, triangles, factor)
@@ -156,7 +156,7 @@ class Mould:
         return np.asarray(self.bounds[1] - self.bounds[0])
 
     def flipped(self) -> Mould:
-        """The other side of the tool: the same mould with every triangle run round the other way."""
+        """Return the other side of the tool: the same mould with every triangle run round the other way."""
         return replace(self, triangles=self.triangles[:, ::-1])
 
     def __repr__(self) -> str:

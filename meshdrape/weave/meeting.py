@@ -12,8 +12,10 @@ from meshdrape.weave.status import NodeStatus
 
 # A disk whose angle defects sum to less than this, rad, cannot turn a sheet round on itself.
 HARMLESS_CURVATURE = np.pi / 2
-# On faces below this many spacings across, far-apart indices on one face are proof either way.
-SMALL_FACE = 10.0
+# On faces below this many spacings across, far-apart indices on one face are proof either way,
+SMALL_FACE = 2.0
+# and worth looking for in a net of more than this many nodes.
+LARGE_NET = 30_000
 
 
 def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lattice, start: Start) -> int:
@@ -39,7 +41,7 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     window = np.empty((len(diameter), 4), dtype=np.int64)
     # collar faces reach far out; on them windows say nothing
     measured = np.where(np.arange(len(diameter)) < len(mould.faces), diameter, np.inf)
-    if small and not spread_on_faces(lattice, window, measured, spacing):
+    if small and np.count_nonzero(lattice.status <= NodeStatus.OFF_MOULD) > LARGE_NET and not spread_on_faces(lattice, window, measured, spacing):
         return 0
     i, j = np.nonzero(lattice.status <= NodeStatus.OFF_MOULD)
     i0, j0 = start.index

@@ -160,9 +160,9 @@ class NodeSearch:
         if leave is None:
             return None
         target = SurfacePoint.from_frame(self.surface, *place).position(self.surface)
-        straight = leave
+        straight, mesh = leave, self.surface.unfolding
         for _ in range(3):
-            code, face, x, y, dx, dy = walk(self.surface.unfolding, *parent, *straight, length)
+            code, face, x, y, dx, dy = walk(mesh.plane, mesh.neighbour, *parent, *straight, length)
             if code != WALKED:
                 break
             frame = self.surface.unfolding.frame[face]
@@ -201,7 +201,8 @@ def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
     if length == 0:
         return place
     dx, dy = move / length
-    code, face, x, y, dx, dy = walk(surface.unfolding, *place, dx, dy, length)
+    mesh = surface.unfolding
+    code, face, x, y, dx, dy = walk(mesh.plane, mesh.neighbour, *place, dx, dy, length)
     return (int(face), x + length * dx, y + length * dy) if code == WALKED else None
 
 

@@ -19,9 +19,9 @@ import meshdrape
 
 # spacing, m: largest shear, degrees, where rows start on the left ribbon and where they come from the wing; gamma = 0
 FIGURE_4 = {0.05: (18.59268, 10.79419), 0.02: (19.05227, 14.03986), 0.01: (19.11677, 15.55281)}
-TURNED = -9.6291  # gamma, degrees
-FIGURE_4_TURNED = {0.05: 8.96357, 0.02: 9.42316, 0.01: 9.48766}  # rows from the left ribbon; from the wing unchanged
 PSI_AT_1 = -19.25821
+TURNED = PSI_AT_1 / 2  # gamma, degrees: middle of all psi
+FIGURE_4_TURNED = {0.05: 8.96357, 0.02: 9.42316, 0.01: 9.48766}  # rows from the left ribbon; from the wing unchanged
 SKEW, SKEW_PSI = 0.12, -6.842773
 
 

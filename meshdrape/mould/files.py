@@ -1,0 +1,37 @@
+"""The file a mould comes in, before anyone reads it."""
+
+import hashlib
+import os
+from pathlib import Path
+
+from meshdrape.errors import FileError
+
+
+def existing_file(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a file that is there, may be read and is not empty.
+
+    Raises
+    ------
+    FileError
+        It is missing, a directory, empty or not readable.
+    """
+    file = Path(path)
+    if file.is_dir():
+        msg = f"{file} is a directory; give the mould file in it"
+        raise FileError(msg)
+    if not file.exists():
+        msg = f"{file} does not exist; check the path"
+        raise FileError(msg)
+    if not os.access(file, os.R_OK):
+        msg = f"{file} may not be read; check its permissions"
+        raise FileError(msg)
+    if not file.stat().st_size:
+        msg = f"{file} is empty; export the mould anew"
+        raise FileError(msg)
+    return file
+
+
+def file_sha256(path: str | os.PathLike[str]) -> str:
+    """Return the SHA-256 of a file's bytes, in hexadecimal."""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

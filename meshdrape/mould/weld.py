@@ -1,0 +1,63 @@
+"""Vertices that are one and the same, given more than once."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# Corners of one vertex that were rounded to single precision on their own may be this share of the largest
+# coordinate apart: a last place in each of three coordinates, twice over.
+ROUND_OFF: Final = 4 * float(np.finfo(np.float32).eps)
+
+
+def welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Return the mesh with vertices of equal coordinates made one, in the order of their first."""
+    points = vertices + 0.0  # minus zero is zero
+    order = np.lexsort(points.T)
+    ordered = points[order]
+    new = (
+        np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
+        if len(order)
+        else np.empty(0, bool)
+    )
+    first = np.empty(len(points), dtype=np.int64)
+    first[order] = order[new][np.cumsum(new) - 1]
+    return _merged(points, triangles, first)
+
+
+def welded_along_borders(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Return the mesh with border vertices that differ by round-off of single precision made one.
+
+    Only vertices of edges that are open are looked at, and never the two ends of one edge.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    edge = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    key = edge[:, 0] * len(vertices) + edge[:, 1]
+    unique, count = np.unique(key, return_counts=True)
+    border = np.unique(np.concatenate(np.divmod(unique[count == 1], len(vertices))))
+    points = vertices[border]
+    if not len(border) or not np.isfinite(points).all():
+        return vertices, triangles
+    pairs = cKDTree(points).query_pairs(ROUND_OFF * float(np.abs(points).max()), output_type="ndarray")
+    a, b = np.sort(border[pairs], axis=1).T
+    apart = ~np.isin(a * len(vertices) + b, unique)
+    n = len(vertices)
+    _, label = connected_components(
+        coo_array((np.ones(apart.sum()), (a[apart], b[apart])), shape=(n, n)), directed=False
+    )
+    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
+    return _merged(vertices, triangles, first[inverse])
+
+
+def _merged(vertices: Floats, triangles: Ints, first: Ints) -> tuple[Floats, Ints]:
+    """Every vertex made the one given for it, (n,), which is its own."""
+    kept = first == np.arange(len(first))
+    return vertices[kept], (np.cumsum(kept) - 1)[first][triangles]
