@@ -178,9 +178,7 @@ def spanwise_edge(x: Profile, z: Profile, span: float) -> cq.Edge:
     raise ValueError(msg)
 
 
-def block_faces(
-    g_w: Profile, g_s: Profile, span: float, chord: float, spar_height: float
-) -> dict[str, cq.Face]:
+def block_faces(g_w: Profile, g_s: Profile, span: float, chord: float, spar_height: float) -> dict[str, cq.Face]:
     """Make the faces of the tool block by name, wing and spar first.
 
     Ruled B-spline faces rather than extrusions: between two equal curves a tessellator then puts vertices on
@@ -212,9 +210,7 @@ def with_fillet(
     solid: cq.Solid, faces: dict[str, cq.Face], fillet_radius: float
 ) -> tuple[cq.Solid, dict[str, cq.Face]]:
     """Round the edge between wing and spar; return the block and its faces by name."""
-    crease = next(
-        edge for edge in faces["wing"].Edges() if any(edge.isSame(e) for e in faces["spar"].Edges())
-    )
+    crease = next(edge for edge in faces["wing"].Edges() if any(edge.isSame(e) for e in faces["spar"].Edges()))
     rounding = BRepFilletAPI_MakeFillet(solid.wrapped)
     rounding.Add(fillet_radius, crease.wrapped)
     rounding.Build()

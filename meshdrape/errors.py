@@ -60,7 +60,9 @@ def missing_library(error: ImportError) -> MissingLibraryError:
     if library in _DEBIAN_PACKAGE:
         return MissingLibraryError(f"{library} is missing; apt-get install {_DEBIAN_PACKAGE[library]}")
     if ".so" in library:
-        return MissingLibraryError(f"{library} is missing; apt-get install the package that has it (apt-file search {library})")
+        return MissingLibraryError(
+            f"{library} is missing; apt-get install the package that has it (apt-file search {library})"
+        )
     if error.name:
         return MissingLibraryError(f"the Python package {error.name} is missing; pip install {error.name}")
     return MissingLibraryError(f"a dependency cannot be imported ({reason}); install meshdrape anew")

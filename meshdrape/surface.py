@@ -123,7 +123,8 @@ class Surface:
     @cached_property
     def vertex_angle(self) -> FloatArray:
         """Sum of the face angles at each vertex, (n,), rad."""
-        return np.bincount(self.faces.ravel(), self.corner_angle.ravel(), minlength=len(self.vertices))
+        weights = self.corner_angle.ravel()
+        return np.asarray(np.bincount(self.faces.ravel(), weights, minlength=len(self.vertices)), dtype=np.float64)
 
     @cached_property
     def border_vertex(self) -> NDArray[np.bool_]:
@@ -167,7 +168,7 @@ class Surface:
         return loops
 
     def is_hole(self, loop: IntArray) -> bool:
-        """Whether a border turns backwards as a whole: about -2 pi for a hole, 0 for a tube's end, 2 pi for an outline."""
+        """Whether a border turns backwards in all: about -2 pi for a hole, 0 for a tube's end, 2 pi for an outline."""
         tails = self.faces[loop // 3, loop % 3]
         return float(np.sum(np.pi - self.vertex_angle[tails])) < -np.pi
 
@@ -190,7 +191,7 @@ class Surface:
         _, first = np.unique(label, return_index=True)
         rank = np.empty(len(first), dtype=np.int64)
         rank[label[np.sort(first)]] = np.arange(len(first))
-        return rank[label]
+        return np.asarray(rank[label])
 
     @cached_property
     def mould_part(self) -> Surface:
@@ -290,11 +291,11 @@ def _unfold(surface: Surface) -> Unfolding:
     crossing[..., 1] = s
     crossing[..., 2] = middle[g, l, 0] - (c * middle[..., 0] - s * middle[..., 1])
     crossing[..., 3] = middle[g, l, 1] - (s * middle[..., 0] + c * middle[..., 1])
-    line, crossing = line.reshape(m, 9), crossing.reshape(m, 12)
+    lines, crossings = line.reshape(m, 9), crossing.reshape(m, 12)
     return Unfolding(
-        plane=np.concatenate([line, crossing, corner], axis=1),
-        line=line,
-        crossing=crossing,
+        plane=np.concatenate([lines, crossings, corner], axis=1),
+        line=lines,
+        crossing=crossings,
         neighbour=neighbour.astype(np.int32),
         corner=corner,
         frame=np.concatenate([surface.vertices[surface.faces[:, 0]], e1, e2], axis=1),

@@ -28,7 +28,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     cloth.add_argument("--spacing", type=spacing, required=True, metavar="MM", help="node to node: 5, or WARP,WEFT")
     cloth.add_argument("--initial-angle", type=degrees, default=math.pi / 2, metavar="DEG", help="warp to weft (90)")
     cloth.add_argument(
-        "--locking-angle", type=degrees, default=math.radians(7), metavar="DEG", help="shear at which it locks (7)"
+        "--locking-angle",
+        type=degrees,
+        default=math.radians(7),
+        metavar="DEG",
+        help="shear at which it locks (7)",
     )
     cloth.add_argument(
         "--extent", type=numbers(4, "four lengths in mm: WARP-,WARP+,WEFT-,WEFT+"), metavar="A,B,C,D",
@@ -40,7 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     start.add_argument("--flip-normal", action="store_true", help="lay the cloth on the other side of the tool")
     out = parser.add_argument_group("the results")
     out.add_argument(
-        "--reference", type=numbers(3, VECTOR), default=(1.0, 0.0, 0.0), metavar="X,Y,Z", help="zero of fibre angles (x)"
+        "--reference",
+        type=numbers(3, VECTOR),
+        default=(1.0, 0.0, 0.0),
+        metavar="X,Y,Z",
+        help="zero of fibre angles (x)",
     )
     out.add_argument("--json", action="store_true", help="print the summary as JSON")
     out.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -166,12 +174,15 @@ def _report(summary: dict[str, Any], files: list[Path]) -> str:
     error = summary["audit_max_relative_error"]
     rows = [
         ("mould", f"{mould['file']}, {size} mm, {mould['triangles']:,} triangles{tolerances}"),
-        ("seed", f"({', '.join(f'{v:.3f}' for v in summary['seed'])}), {summary['seed_distance_mm']:.3g} mm from the one given"),
+        ("seed", f"({', '.join(f'{v:.3f}' for v in summary['seed'])})"),
         ("net", f"{summary['nodes']:,} nodes, {summary['cells']:,} cells, spacing {woven} mm"),
         ("cloth", f"{cloth['warp']:,.0f} x {cloth['weft']:,.0f} mm, {cloth['area_mm2'] / 1e6:.3f} m2"),
         ("coverage", f"{summary['coverage_percent']:.2f} % of the mould"),
         ("max shear", f"{summary['max_shear_deg']:.3f} deg{where}"),
-        ("locking", f"{summary['over_locking_percent']:.2f} % of the area above {fabric['locking_angle_deg']:g} deg"),
+        (
+            "locking",
+            f"{summary['over_locking_percent']:.2f} % of the area above {fabric['locking_angle_deg']:g} deg",
+        ),
         ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg"),
         ("balance", f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg"),
         ("audit", f"{checked['n_edges']:,} edges by libigl, largest relative error {error:.1e}"),
@@ -179,7 +190,13 @@ def _report(summary: dict[str, Any], files: list[Path]) -> str:
     ]
     if summary["warp_angle_deg"]:
         angle = summary["warp_angle_deg"]
-        rows.insert(7, ("warp angle", f"{angle['min']:.2f} to {angle['max']:.2f} deg from the reference, mean {angle['mean']:.2f}"))
+        rows.insert(
+            7,
+            (
+                "warp angle",
+                f"{angle['min']:.2f} to {angle['max']:.2f} deg from the reference, mean {angle['mean']:.2f}",
+            ),
+        )
     lines = [f"{name:>10}  {text}" for name, text in rows]
     lines += [
         f"{'face ' + str(face['id']):>10}  {face['name'] or ''} covered {face['coverage_percent']:.1f} %, "

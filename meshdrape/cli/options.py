@@ -62,7 +62,11 @@ def add_mould_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--angle-tolerance", type=degrees, metavar="DEG", help="largest angle between facets")
     group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
     group.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter of a CadQuery script; repeatable"
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="parameter of a CadQuery script; repeatable",
     )
 
 
@@ -71,9 +75,7 @@ def read_mould(options: argparse.Namespace) -> Mould:
     from meshdrape.mould import read_mould as read
 
     tolerances = {
-        name: value
-        for name in ("chord_tolerance", "angle_tolerance")
-        if (value := getattr(options, name)) is not None
+        name: value for name in ("chord_tolerance", "angle_tolerance") if (value := getattr(options, name)) is not None
     }
     parameters = {}
     for word in options.set:

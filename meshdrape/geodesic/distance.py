@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         def surface(self) -> Surface:
             """The triangle mesh."""
 
+
 FloatArray = NDArray[np.float64]
 
 

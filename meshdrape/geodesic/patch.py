@@ -127,8 +127,9 @@ class Patch:
         return np.array([1 - beta - gamma, beta, gamma])
 
     def _split_edge(self, n: int, u: int, v: int, new: int) -> None:
-        face = self._faces[n]
-        self._replace(n, [tuple(new if w == v else w for w in face), tuple(new if w == u else w for w in face)])  # type: ignore[list-item]
+        a, b, c = self._faces[n]
+        halves = [tuple(new if w == gone else w for w in (a, b, c)) for gone in (v, u)]
+        self._replace(n, [(p, q, r) for p, q, r in halves])
 
     def _replace(self, n: int, pieces: list[tuple[int, int, int]]) -> None:
         self._faces[n] = pieces[0]
@@ -140,7 +141,12 @@ class Patch:
 
 
 def _cut(
-    patch: Patch, surface: Surface, faces: IntArray, ends: tuple[SurfacePoint, ...], centre: FloatArray, radius: float
+    patch: Patch,
+    surface: Surface,
+    faces: IntArray,
+    ends: tuple[SurfacePoint, ...],
+    centre: FloatArray,
+    radius: float,
 ) -> Patch:
     """Fill an empty patch with the hull, face by face, of what a ball keeps of the edges, and of the end points.
 

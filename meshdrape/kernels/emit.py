@@ -125,8 +125,8 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
     corners at (i, j) and (i + 1, j + 1) as they are, the other two as supplements. NaN where a corner is missing.
     """
     n_weft = net.status.shape[1]
-    i0 = start.index[0]
-    j0 = start.index[1]
+    i0 = start.origin[0]
+    j0 = start.origin[1]
     # weft edges of the row below, both ends
     below = np.empty((n_weft, 4))
     above = np.empty((n_weft, 4))
@@ -232,7 +232,7 @@ def _crosses_mould(mesh, face, x, y, dx, dy, length):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def touching_cells(mesh, net, start, i_first, warp, weft, out):
-    """Whether each whole cell touches the mould, by a corner or an edge across it: rows from i_first, out (rows, n_weft - 1)."""
+    """Whether each whole cell touches the mould, by a corner or an edge; rows from i_first, out (rows, n_weft - 1)."""
     n_weft = net.status.shape[1]
     for a in range(out.shape[0]):
         i = i_first + a

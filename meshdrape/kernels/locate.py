@@ -105,7 +105,7 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
     Parameters
     ----------
     tangent : (2, n_warp, n_weft, 3)
-        Directions of warp and weft at the nodes where they are at hand, else of length 0: they are then found as needed.
+        Directions of warp and weft at the nodes, if at hand, else of length 0: they are then found as needed.
     face : (n,) int64
         Face of the surface that holds each point; points of one face follow each other.
     point, normal : (n, 3)
@@ -165,8 +165,8 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
                 alpha, beta = _solve(px, py, pz, normal[q], a, u, v)
                 if not (abs(alpha) < 1e6 and abs(beta) < 1e6):
                     break
-                di = int(math.floor(alpha))
-                dj = int(math.floor(beta))
+                di = math.floor(alpha)
+                dj = math.floor(beta)
                 if di == 0 and dj == 0:
                     found = _whole(net, i, j)
                     break
@@ -179,7 +179,12 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
                 for _shrink in range(12):
                     ti = i + di
                     tj = j + dj
-                    if 0 <= ti < n_warp and 0 <= tj < n_weft and net.status[ti, tj] <= OFF_MOULD and (di != 0 or dj != 0):
+                    if (
+                        0 <= ti < n_warp
+                        and 0 <= tj < n_weft
+                        and net.status[ti, tj] <= OFF_MOULD
+                        and (di != 0 or dj != 0)
+                    ):
                         i = ti
                         j = tj
                         moved = True
@@ -245,7 +250,7 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def cells_by_face(net, shear, touching, locking, initial_angle, largest, area, over):
-    """Per face of the mould, of the cells whose first corner on it lies there: largest |shear|, area, area over the lock.
+    """Largest |shear|, area and area over the lock per face of the mould, of the cells whose first corner lies there.
 
     largest, area, over : (m,) accumulated; areas in cells of sin(angle) = 1.
     """

@@ -77,6 +77,11 @@ def _in_cell(position, status, ci, cj, face_frame, px, py, pz, thickness):
     return True
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def _bucket(x, y, z, size):
+    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) & (size - 1)
+
+
 @njit(cache=True, error_model="numpy")
 def stop_where_met(mesh, net, index, position, order, radius):
     """Take back, in a fixed order, each node that lies on a cell kept before it, and what depends on it.
@@ -99,8 +104,11 @@ def stop_where_met(mesh, net, index, position, order, radius):
     n_warp, n_weft = status.shape
     kept = np.full((n_warp, n_weft), 8, dtype=np.uint8)
     following = np.full(len(order), -1, dtype=np.int64)
-    heads = dict()
-    heads[(np.int64(0), np.int64(0), np.int64(0))] = np.int64(-1)
+    # kept nodes by cubes of side `radius`, hashed; a chance collision only costs a look
+    size = 1024
+    while size < 2 * len(order):
+        size *= 2
+    heads = np.full(size, -1, dtype=np.int64)
     taken = 0
     thickness = THICKNESS * radius
     for n in range(len(order)):
@@ -128,10 +136,7 @@ def stop_where_met(mesh, net, index, position, order, radius):
         nz = frame[3] * frame[7] - frame[4] * frame[6]
         if not met:
             for near in range(27):
-                key = (vx + near // 9 - 1, vy + near // 3 % 3 - 1, vz + near % 3 - 1)
-                if key not in heads:
-                    continue
-                m = heads[key]
+                m = heads[_bucket(vx + near // 9 - 1, vy + near // 3 % 3 - 1, vz + near % 3 - 1, size)]
                 while m >= 0 and not met:
                     a = order[m, 0]
                     b = order[m, 1]
@@ -160,7 +165,7 @@ def stop_where_met(mesh, net, index, position, order, radius):
             taken += 1
             continue
         kept[i, j] = status[i, j]
-        key = (vx, vy, vz)
-        following[n] = heads[key] if key in heads else np.int64(-1)
-        heads[key] = np.int64(n)
+        bucket = _bucket(vx, vy, vz, size)
+        following[n] = heads[bucket]
+        heads[bucket] = n
     return taken

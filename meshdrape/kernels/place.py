@@ -61,7 +61,9 @@ def place(plane, neighbour, frame, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, w
             y2 = by + wb * qy
             gap2 = (x2 - x1) ** 2 + (y2 - y1) ** 2
         else:
-            gap2, turn_a, turn_b = _gap_in_space(frame, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb)
+            gap2, turn_a, turn_b = _gap_in_space(
+                frame, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb
+            )
         if gap2 <= tolerance * tolerance:
             if not shared:
                 qx, qy = turn_into(plane, neighbour, frame, f2, qx, qy, f1)

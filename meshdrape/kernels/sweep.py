@@ -28,8 +28,8 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
     Returns (dx, dy, ex, ey): leaving (i, j), arriving at the neighbour. Only the seed's side is kept of an edge,
     so the other end is walked to, unless one face holds both.
     """
-    i0 = start.index[0]
-    j0 = start.index[1]
+    i0 = start.origin[0]
+    j0 = start.origin[1]
     if family == WARP:
         i2 = i + step
         j2 = j
@@ -78,7 +78,9 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
         ex = ox
         ey = oy
     else:
-        _, face, _, _, ex, ey = walk(mesh.plane, mesh.neighbour, tail_face, net.xy[ti, tj, 0], net.xy[ti, tj, 1], ox, oy, length)
+        _, face, _, _, ex, ey = walk(
+            mesh.plane, mesh.neighbour, tail_face, net.xy[ti, tj, 0], net.xy[ti, tj, 1], ox, oy, length
+        )
         ex, ey = turn_into(mesh.plane, mesh.neighbour, mesh.frame, face, ex, ey, head_face)
     if outward:
         return sx, sy, ex, ey
@@ -91,7 +93,7 @@ def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
     if family == WARP:
         i2 = i + step
         k = min(i, i2)
-        if (i2 > start.index[0]) == (step > 0) and i2 != start.index[0]:
+        if (i2 > start.origin[0]) == (step > 0) and i2 != start.origin[0]:
             net.warp_out[k, j, 0] = dx
             net.warp_out[k, j, 1] = dy
         else:
@@ -100,7 +102,7 @@ def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
     else:
         j2 = j + step
         k = min(j, j2)
-        if (j2 > start.index[1]) == (step > 0) and j2 != start.index[1]:
+        if (j2 > start.origin[1]) == (step > 0) and j2 != start.origin[1]:
             net.weft_out[i, k, 0] = dx
             net.weft_out[i, k, 1] = dy
         else:
@@ -152,8 +154,8 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
     status = net.status
     # directions in which the weft edges of the row before arrive, (0, 0) where not known
     arrived = np.zeros((j_count, 2))
-    i0 = start.index[0]
-    j0 = start.index[1]
+    i0 = start.origin[0]
+    j0 = start.origin[1]
     tolerance2 = tolerance * tolerance
     side = float(si * sj)
     for a in range(i_count):
@@ -333,7 +335,7 @@ def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, re
     side = float(si * sj)
     half = _half_fibre(si, sj)
     if has_a and status[i, jb] == OUTSIDE and _near_mould(status, ia, j, -si, 0):
-        if ia != start.index[0]:
+        if ia != start.origin[0]:
             if status[ia - si, j] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WARP, ia - si, j, si, warp)
                 return _step(mesh, net, start, WARP, ia, j, si, i, j, dx, dy, warp, slack, report)
@@ -342,11 +344,9 @@ def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, re
             _, _, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
             c = math.cos(start.sector[half])
             s = -side * math.sin(start.sector[half])
-            return _step(
-                mesh, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report
-            )
+            return _step(mesh, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report)
     if has_b and status[ia, j] == OUTSIDE and _near_mould(status, i, jb, 0, -sj):
-        if jb != start.index[1]:
+        if jb != start.origin[1]:
             if status[i, jb - sj] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WEFT, i, jb - sj, sj, weft)
                 return _step(mesh, net, start, WEFT, i, jb, sj, i, j, dx, dy, weft, slack, report)
@@ -354,9 +354,7 @@ def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, re
             _, _, gx, gy = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
             c = math.cos(start.sector[half])
             s = side * math.sin(start.sector[half])
-            return _step(
-                mesh, net, start, WEFT, i, jb, sj, i, j, c * gx - s * gy, s * gx + c * gy, weft, slack, report
-            )
+            return _step(mesh, net, start, WEFT, i, jb, sj, i, j, c * gx - s * gy, s * gx + c * gy, weft, slack, report)
     if (has_a or status[ia, j] == OUTSIDE) and (has_b or status[i, jb] == OUTSIDE):
         return OUTSIDE
     return NOT_REACHED
@@ -368,7 +366,9 @@ def _step(mesh, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, r
     size = math.sqrt(dx * dx + dy * dy)
     dx /= size
     dy /= size
-    code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length)
+    code, f, x, y, ex, ey = walk(
+        mesh.plane, mesh.neighbour, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length
+    )
     if code != WALKED:
         return OUTSIDE
     report[0] += 1

@@ -62,7 +62,7 @@ class Start(NamedTuple):
     A seed on an edge or a vertex belongs to several faces, so each half-fibre keeps its own.
     """
 
-    index: NDArray[np.int64]
+    origin: NDArray[np.int64]
     """(2,) lattice index of the seed."""
     face: NDArray[np.int32]
     """(4,) face each half-fibre enters."""
@@ -77,6 +77,6 @@ class Start(NamedTuple):
     through: NDArray[np.bool_]
     """(4, n) whether a half-fibre runs through a vertex on its first, second ... edge."""
     bent_key: NDArray[np.int64]
-    """(k,) keys of the edges that bend at a saddle vertex, ascending: no straight walk from the tail reaches the head."""
+    """(k,) keys, ascending, of the edges that bend at a saddle vertex: no straight walk reaches their heads."""
     bent_ends: FloatArray
     """(k, 4) their directions at the tail and at the head, in the frames of the nodes' faces."""

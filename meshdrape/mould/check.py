@@ -10,6 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import MouldError
+from meshdrape.mould.topology import (
+    edge_joints,
+    edge_keys,
+    fans,
+    misfacing,
+    relative_height,
+    repeats_triangle,
+    repeats_vertex,
+)
 from meshdrape.surface import Surface
 
 Floats = NDArray[np.float64]
@@ -127,10 +136,9 @@ def as_arrays(vertices: ArrayLike, triangles: ArrayLike, factor: float = 1.0) ->
 
 def examine(vertices: Floats, triangles: Ints) -> MeshReport:
     """Find what is wrong with a mesh whose arrays :func:`as_arrays` has passed. O(m log m)."""
-    a, b, c = triangles.T
-    repeated = (a == b) | (b == c) | (c == a)
-    flat = _zero_area(vertices, triangles) & ~repeated
-    twice = _duplicate(triangles) & ~repeated
+    repeated = repeats_vertex(triangles)
+    flat = (relative_height(vertices, triangles) <= FLATTEST) & ~repeated
+    twice = repeats_triangle(triangles) & ~repeated
     # what is named once need not be named again by its edges
     whole = triangles[~(repeated | twice)]
     faults = [
@@ -215,109 +223,32 @@ def _numeric(values: ArrayLike, name: str, wanted: str, kinds: str) -> NDArray[A
     return array
 
 
-def _zero_area(vertices: Floats, triangles: Ints) -> NDArray[np.bool_]:
-    """Whether each triangle is lower than ``FLATTEST`` times its longest edge."""
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    u, v, w = b - a, c - a, c - b
-    doubled = np.cross(u, v)
-    longest2 = np.maximum(np.maximum(_dot(u, u), _dot(v, v)), _dot(w, w))
-    return np.asarray(np.sqrt(_dot(doubled, doubled)) <= FLATTEST * longest2)
-
-
-def _dot(a: Floats, b: Floats) -> Floats:
-    return np.asarray(np.einsum("ij,ij->i", a, b))
-
-
-def _duplicate(triangles: Ints) -> NDArray[np.bool_]:
-    """Whether each triangle has the same vertices as an earlier one, in whatever order."""
-    rows = np.sort(triangles, axis=1)
-    order = np.lexsort(rows.T)
-    same = (rows[order[1:]] == rows[order[:-1]]).all(axis=1)
-    later = np.zeros(len(rows), dtype=bool)
-    later[order[1:][same]] = True
-    return later
-
-
-def _faces_at(kind: FaultKind, found: NDArray[np.bool_], vertices: Floats, triangles: Ints) -> Fault:
-    where = np.flatnonzero(found)
-    return _fault(kind, len(where), vertices[triangles[where[0]]].mean(axis=0) if len(where) else None)
-
-
-def _fault(kind: FaultKind, count: int, place: Floats | None) -> Fault:
-    x, y, z = (0.0, 0.0, 0.0) if place is None else map(float, place)
-    return Fault(kind, count, (x, y, z))
-
-
 def _faults_of_edges(vertices: Floats, triangles: Ints) -> list[Fault]:
     """Find edges of more than two triangles, vertices of more than one fan, triangles wound unlike others."""
-    tail = triangles.ravel()
-    head = triangles[:, [1, 2, 0]].ravel()
-    key = np.minimum(tail, head) * len(vertices) + np.maximum(tail, head)
-    half = np.argsort(key, kind="stable")  # half-edges 3 f + k, those of one edge side by side
-    joined = key[half[1:]] == key[half[:-1]]
-    one, other = half[:-1][joined], half[1:][joined]  # two half-edges on one edge
-    # a third half-edge on the edge makes two joints in a row
-    third = one[1:][one[1:] == other[:-1]]
-    _, first = np.unique(key[third], return_index=True)
-    crowded = np.sort(third[first])
-    middle = vertices[[tail[crowded[0]], head[crowded[0]]]].mean(axis=0) if len(crowded) else None
-    faults = [
-        _fault(FaultKind.NON_MANIFOLD_EDGE, len(crowded), middle),
-        _bow_ties(vertices, triangles, one, other),
-    ]
-    alike = tail[one] == tail[other]
+    joints = edge_joints(triangles, len(vertices))
+    crowded = joints.crowded()
+    _, first = np.unique(edge_keys(triangles, len(vertices))[crowded], return_index=True)
+    crowded = np.sort(crowded[first])
+    ends = [triangles[h // 3, (h + k) % 3] for h in crowded[:1] for k in (0, 1)]
+    faults = [_fault(FaultKind.NON_MANIFOLD_EDGE, len(crowded), vertices[ends])]
+    corner_vertex = triangles.ravel()
+    _, corner = np.unique(fans(triangles, joints), return_index=True)
+    shared = np.flatnonzero(np.bincount(corner_vertex[corner], minlength=1) > 1)
+    faults.append(_fault(FaultKind.BOW_TIE, len(shared), vertices[shared[:1]]))
     # where three triangles meet no side is the right one
-    if not len(crowded) and alike.any():
-        faults += _misfacing(vertices, triangles, one // 3, other // 3, alike)
+    if not len(crowded) and joints.alike.any():
+        wrong, one_sided, component = misfacing(triangles, joints)
+        first_face = triangles[np.flatnonzero(one_sided)[:1]].ravel()
+        faults.append(_faces_at(FaultKind.MIXED_ORIENTATION, wrong, vertices, triangles))
+        faults.append(_fault(FaultKind.ONE_SIDED, len(np.unique(component[one_sided])), vertices[first_face]))
     return faults
 
 
-def _bow_ties(vertices: Floats, triangles: Ints, one: Ints, other: Ints) -> Fault:
-    """Vertices whose triangles hang together only at the vertex itself."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    corner_vertex = triangles.ravel()
-    following = np.arange(len(corner_vertex)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
-    alike = corner_vertex[one] == corner_vertex[other]
-    # corners 3 f + k of one vertex on both sides of an edge belong to one fan
-    start, end = np.where(alike, other, following[other]), np.where(alike, following[other], other)
-    links = np.concatenate([one, following[one]]), np.concatenate([start, end])
-    n = len(corner_vertex)
-    graph = coo_array((np.ones(len(links[0]), dtype=np.int8), links), shape=(n, n))
-    _, fan = connected_components(graph, directed=False)
-    _, first = np.unique(fan, return_index=True)
-    shared = np.flatnonzero(np.bincount(corner_vertex[first], minlength=1) > 1)
-    return _fault(FaultKind.BOW_TIE, len(shared), vertices[shared[0]] if len(shared) else None)
+def _faces_at(kind: FaultKind, found: NDArray[np.bool_], vertices: Floats, triangles: Ints) -> Fault:
+    return _fault(kind, int(np.count_nonzero(found)), vertices[triangles[found][:1].ravel()])
 
 
-def _misfacing(
-    vertices: Floats, triangles: Ints, face: Ints, neighbour: Ints, alike: NDArray[np.bool_]
-) -> list[Fault]:
-    """Find the fewest triangles to be turned over in each component, and components where no turning helps.
-
-    Every triangle is taken twice, as it is (f) and turned over (m + f), and joined to its neighbours' copies
-    of the same side. A two-sided component then falls into two halves, a one-sided one stays whole.
-    """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    m = len(triangles)
-    across = np.where(alike, m + neighbour, neighbour)
-    back = np.where(alike, neighbour, m + neighbour)
-    links = np.concatenate([face, m + face]), np.concatenate([across, back])
-    graph = coo_array((np.ones(2 * len(face)), links), shape=(2 * m, 2 * m))
-    _, side = connected_components(graph, directed=False)
-    as_it_is, turned = side[:m], side[m:]
-    one_sided = as_it_is == turned
-    size = np.bincount(as_it_is, minlength=2 * m)
-    # of the two halves of a component, keep the one with more triangles as they are; the first of two alike
-    fewer = size[as_it_is] < size[turned]
-    fewer |= (size[as_it_is] == size[turned]) & (as_it_is > turned)
-    fewer &= ~one_sided
-    whole, first = np.unique(as_it_is[one_sided], return_index=True)
-    middle = vertices[triangles[np.flatnonzero(one_sided)[first.min()]]].mean(axis=0) if len(whole) else None
-    return [
-        _faces_at(FaultKind.MIXED_ORIENTATION, fewer, vertices, triangles),
-        _fault(FaultKind.ONE_SIDED, len(whole), middle),
-    ]
+def _fault(kind: FaultKind, count: int, points: Floats) -> Fault:
+    """Return a fault whose first place is in the middle of the points."""
+    x, y, z = points.mean(axis=0).tolist() if count else (0.0, 0.0, 0.0)
+    return Fault(kind, count, (x, y, z))

@@ -16,7 +16,6 @@ another, however long and thin the face.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +26,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 FLIP_GAIN = 1e-6  # rad of opposite angle a flip must gain, so that round-off cannot turn it to and fro
-THINNEST = 1e-6  # smallest share a triangle may have of its quadrilateral in (u, v): less is a collinear corner
+THINNEST = (
+    1e-6  # smallest share a triangle may have of its quadrilateral in (u, v): less is a collinear corner
+)
 MAX_ROUNDS = 500
 
 
@@ -64,7 +65,9 @@ class Facets:
                 return
             touched = self._flip(edge)
 
-    def split_long_edges(self, limit: Callable[[Facets, Ints], Floats], evaluate: Evaluate, most: int) -> None:
+    def split_long_edges(
+        self, limit: Callable[[Facets, Ints], Floats], evaluate: Evaluate, most: int
+    ) -> None:
         rng = np.random.default_rng(0)
         for _ in range(MAX_ROUNDS):
             edge = self._inner_edges(np.arange(len(self.triangles)))
@@ -77,7 +80,9 @@ class Facets:
             if not len(edge):
                 return
             a, b, _, _ = self._quad(edge)
-            self.flip_to_delaunay(self._split(edge, evaluate(self.nodes.face[a], (self.nodes.uv[a] + self.nodes.uv[b]) / 2)))
+            self.flip_to_delaunay(
+                self._split(edge, evaluate(self.nodes.face[a], (self.nodes.uv[a] + self.nodes.uv[b]) / 2))
+            )
 
     def _inner_edges(self, triangles: Ints) -> Ints:
         """One half-edge, the lower, of every inner edge of the triangles."""
@@ -98,7 +103,10 @@ class Facets:
         ca, cb, da, db = uv[a] - uv[c], uv[b] - uv[c], uv[a] - uv[d], uv[b] - uv[d]
         root = np.sqrt(np.maximum(m[:, 0] * m[:, 2] - m[:, 1] ** 2, 0.0))
         return (
-            _angle(m, root, ca, cb) + _angle(m, root, db, da) - _angle(m, root, -da, -ca) - _angle(m, root, -cb, -db)
+            _angle(m, root, ca, cb)
+            + _angle(m, root, db, da)
+            - _angle(m, root, -da, -ca)
+            - _angle(m, root, -cb, -db)
         )
 
     def _convex(self, a: Ints, b: Ints, c: Ints, d: Ints) -> NDArray[np.bool_]:
@@ -121,7 +129,9 @@ class Facets:
         a, b, c, d = self._quad(edge)
         twin = self.twin[edge]
         left, right = edge // 3, twin // 3
-        outer = np.concatenate([_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))])  # bc, ca, ad, db
+        outer = np.concatenate(
+            [_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))]
+        )  # bc, ca, ad, db
         moved = np.concatenate([3 * right + 1, 3 * left + 2, 3 * left, 3 * right])
         # left becomes a, d, c and right becomes b, c, d
         moved = np.concatenate([3 * right, 3 * left + 2, 3 * left, 3 * right + 2])
@@ -139,7 +149,9 @@ class Facets:
         m = len(self.nodes.uv) + np.arange(len(edge))
         first = len(self.triangles)
         left_b, right_b = first + np.arange(len(edge)), first + len(edge) + np.arange(len(edge))
-        outer = np.concatenate([_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))])  # bc, ca, ad, db
+        outer = np.concatenate(
+            [_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))]
+        )  # bc, ca, ad, db
         # left = a m c, left_b = m b c, right = m a d, right_b = b m d
         moved = np.concatenate([3 * left_b + 1, 3 * left + 2, 3 * right + 1, 3 * right_b + 2])
         self.nodes = Nodes.joined([self.nodes, middle])
@@ -148,7 +160,12 @@ class Facets:
         self.triangles = np.vstack([self.triangles, np.column_stack([m, b, c]), np.column_stack([b, m, d])])
         self.twin = np.concatenate([self.twin, np.full(6 * len(edge), -1, dtype=np.int64)])
         self._rejoin(outer, moved)
-        for one, two in ((3 * left, 3 * right), (3 * left_b, 3 * right_b), (3 * left + 1, 3 * left_b + 2), (3 * right + 2, 3 * right_b + 1)):
+        for one, two in (
+            (3 * left, 3 * right),
+            (3 * left_b, 3 * right_b),
+            (3 * left + 1, 3 * left_b + 2),
+            (3 * right + 2, 3 * right_b + 1),
+        ):
             self.twin[one], self.twin[two] = two, one
         return np.concatenate([left, right, left_b, right_b])
 
@@ -184,5 +201,9 @@ def _cross(a: Floats, b: Floats) -> Floats:
 
 def _angle(m: Floats, root: Floats, a: Floats, b: Floats) -> Floats:
     """Angle from a to b in the metric, rad, within (-pi, pi]."""
-    dot = m[:, 0] * a[:, 0] * b[:, 0] + m[:, 1] * (a[:, 0] * b[:, 1] + a[:, 1] * b[:, 0]) + m[:, 2] * a[:, 1] * b[:, 1]
+    dot = (
+        m[:, 0] * a[:, 0] * b[:, 0]
+        + m[:, 1] * (a[:, 0] * b[:, 1] + a[:, 1] * b[:, 0])
+        + m[:, 2] * a[:, 1] * b[:, 1]
+    )
     return np.arctan2(root * _cross(a, b), dot)

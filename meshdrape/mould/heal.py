@@ -1,4 +1,4 @@
-"""Repair of a mesh that cannot be draped, with an account of what it changed and how far the surface moved."""
+"""Repair of a mesh that cannot be draped, with an account of what changed and how far the surface moved."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshdrape.errors import missing_library
-from meshdrape.mould.check import (
-    Fault,
-    as_arrays,
-    counted,
+from meshdrape.errors import MouldError, missing_library
+from meshdrape.mould.check import Fault, as_arrays, counted, examine, without_unreferenced
+from meshdrape.mould.topology import (
     edge_joints,
-    examine,
-    reversed_triangles,
-    without_unreferenced,
+    edge_keys,
+    misfacing,
+    relative_height,
+    repeats_triangle,
+    repeats_vertex,
 )
 
 Floats = NDArray[np.float64]
@@ -84,9 +84,9 @@ class HealReport:
 def heal(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints, HealReport]:
     """Return a mesh that can be draped, made of one that need not be, and what that changed.
 
-    Close vertices are merged, duplicate and degenerate triangles removed, fins and other non-manifold parts taken
-    off, vertices where parts only touch split, and triangles turned to face as most of their component does. Holes
-    are left open, and those that a removed triangle leaves too.
+    Close vertices are merged, duplicate and degenerate triangles removed, fins and other non-manifold parts
+    taken off, vertices where parts only touch split, and triangles turned to face as most of their component
+    does. Holes are left open, those that a removed triangle leaves too.
 
     Parameters
     ----------
@@ -108,8 +108,11 @@ def heal(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints, HealR
         bench.remove_degenerate()
         bench.remove_non_manifold()
         bench.reverse()
+        if not len(bench.triangles):
+            msg = "nothing is left after healing; repair the mesh in CAD"
+            raise MouldError(msg)
         left = examine(bench.vertices, bench.triangles)
-        if not left.faults or not len(bench.triangles):
+        if not left.faults:
             break
     left.require_drapable("that is left after healing: repair it in CAD")
     report = HealReport(
@@ -141,19 +144,117 @@ class _Bench:
         edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
         diagonal = float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
         threshold = min(CLOSE * diagonal, CLOSE_TO_EDGE * float(np.median(edges)))
+        self._keep(~repeats_vertex(self.triangles))
         before = len(self.vertices)
-        self._apply("meshing_merge_close_vertices", threshold=_pymeshlab().PureValue(threshold))
-        self.vertices_merged += before - len(self.vertices)
+        self._filter("meshing_merge_close_vertices", threshold=_pymeshlab().PureValue(threshold))
+        self.vertices_merged = before - len(self.vertices)
 
     def remove_degenerate(self) -> None:
-        before = len(self.triangles)
-        self._keep(~self._repeated())
-        self._apply("meshing_remove_duplicate_faces")
-        self.triangles_removed += before - len(self.triangles)
+        self._keep(~repeats_vertex(self.triangles))
+        self._keep(~repeats_triangle(self.triangles))
         needles = self._needles()
-        if needles:
-            self._apply("meshing_remove_t_vertices", method="Edge Flip", threshold=NEEDLE, repeat=True)
-            self.edges_turned += needles - self._needles()
-            before = len(self.triangles)
-            self._apply("meshing_remove_null_faces")
-            self.triangles_removed += before - len(self.triangles)
+        if needles.any():
+            # a hole as thin as the needle would be left if it were removed
+            self._filter("meshing_remove_t_vertices", method="Edge Flip", threshold=NEEDLE, repeat=True)
+            left = self._needles()
+            self.edges_turned += int(np.count_nonzero(needles) - np.count_nonzero(left))
+            self._keep(~left)
+
+    def remove_non_manifold(self) -> None:
+        """Take off fins first, else the filter might cut the sheet that a fin stands on."""
+        while (fins := self._fins()).any():
+            self._keep(~fins)
+        before = len(self.triangles)
+        self._filter("meshing_repair_non_manifold_edges", method="Remove Faces")
+        self.triangles_removed += before - len(self.triangles)
+        vertices = len(self.vertices)
+        self._filter("meshing_repair_non_manifold_vertices")
+        self.vertices_split += len(self.vertices) - vertices
+        self.vertices, self.triangles = without_unreferenced(self.vertices, self.triangles)
+
+    def reverse(self) -> None:
+        wrong, _, _ = misfacing(self.triangles, edge_joints(self.triangles, len(self.vertices)))
+        self.triangles = np.where(wrong[:, None], self.triangles[:, ::-1], self.triangles)
+        self.triangles_reversed += int(np.count_nonzero(wrong))
+
+    def _needles(self) -> NDArray[np.bool_]:
+        return np.asarray(relative_height(self.vertices, self.triangles) <= 1 / NEEDLE)
+
+    def _fins(self) -> NDArray[np.bool_]:
+        """Whether each triangle hangs on an edge of more than two triangles and on nothing else."""
+        _, edge, count = np.unique(
+            edge_keys(self.triangles, len(self.vertices)), return_inverse=True, return_counts=True
+        )
+        triangles_on = count[edge].reshape(-1, 3)
+        return np.asarray(((triangles_on == 1).sum(axis=1) == 2) & (triangles_on > 2).any(axis=1))
+
+    def _keep(self, wanted: NDArray[np.bool_]) -> None:
+        self.triangles_removed += int(np.count_nonzero(~wanted))
+        self.triangles = self.triangles[wanted]
+
+    def _filter(self, name: str, **parameters: Any) -> None:
+        """Put the mesh through a filter of MeshLab."""
+        if not len(self.triangles):
+            return
+        workshop = _pymeshlab().MeshSet(verbose=False)
+        workshop.add_mesh(_pymeshlab().Mesh(vertex_matrix=self.vertices, face_matrix=self.triangles))
+        workshop.apply_filter(name, **parameters)
+        mesh = workshop.current_mesh()
+        self.vertices = np.array(mesh.vertex_matrix(), dtype=np.float64)
+        self.triangles = np.array(mesh.face_matrix(), dtype=np.int64).reshape(-1, 3)
+
+
+def _moved(old_vertices: Floats, old_triangles: Ints, vertices: Floats, triangles: Ints) -> float:
+    """Largest distance found from either surface to the other, mm."""
+    old, new = old_vertices[old_triangles], vertices[triangles]
+    return max(
+        _farthest(_probes(old[~_found_in(old, new)]), vertices, triangles),
+        _farthest(_probes(new[~_found_in(new, old)]), old_vertices, old_triangles),
+    )
+
+
+def _found_in(corners: Floats, others: Floats) -> NDArray[np.bool_]:
+    """Whether each triangle (m, 3, 3) is among the others, to the last bit and wound either way."""
+    rows = np.concatenate([corners, others])
+    order = np.lexsort(np.moveaxis(rows, 2, 0)[::-1], axis=1)
+    rows = np.take_along_axis(rows, order[..., None], axis=1).reshape(len(rows), 9)
+    _, number = np.unique(rows, axis=0, return_inverse=True)
+    return np.isin(number[: len(corners)], number[len(corners) :])
+
+
+def _probes(corners: Floats) -> Floats:
+    """Points evenly spread over triangles (m, 3, 3), corners and edges among them."""
+    steps = np.arange(PROBES)
+    weights = np.array([(a, b, PROBES - 1 - a - b) for a in steps for b in steps[: PROBES - a]]) / (
+        PROBES - 1
+    )
+    return np.asarray(np.einsum("pk,mkd->mpd", weights, corners).reshape(-1, 3))
+
+
+def _farthest(points: Floats, vertices: Floats, triangles: Ints) -> float:
+    """Largest distance of a point from a surface, mm; 0 for no point."""
+    if not len(points):
+        return 0.0
+    pymeshlab = _pymeshlab()
+    workshop = pymeshlab.MeshSet(verbose=False)
+    workshop.add_mesh(pymeshlab.Mesh(vertex_matrix=points))
+    workshop.add_mesh(pymeshlab.Mesh(vertex_matrix=vertices, face_matrix=triangles))
+    reach = float(np.linalg.norm(np.ptp(np.concatenate([points, vertices]), axis=0)))
+    found = workshop.get_hausdorff_distance(
+        sampledmesh=0,
+        targetmesh=1,
+        samplevert=True,
+        sampleedge=False,
+        sampleface=False,
+        samplenum=len(points),
+        maxdist=pymeshlab.PureValue(reach),
+    )
+    return float(found["max"])
+
+
+def _pymeshlab() -> Any:
+    try:
+        import pymeshlab
+    except ImportError as error:
+        raise missing_library(error) from error
+    return pymeshlab

@@ -20,6 +20,7 @@ from meshdrape.mould.formats.ply import read_ply
 from meshdrape.mould.formats.polygons import Polygons
 from meshdrape.mould.formats.stl import read_stl
 from meshdrape.mould.mould import Mould
+from meshdrape.mould.units import millimetres
 from meshdrape.mould.weld import welded, welded_along_borders
 
 if TYPE_CHECKING:
@@ -99,9 +100,12 @@ def read_mesh(path: str | os.PathLike[str]) -> MeshFile:
     elif len(vertices) < len(polygons.vertices):
         n_welded = len(polygons.vertices) - len(vertices)
         notes.append(f"{counted(n_welded, 'vertex')} with the coordinates of another welded to it")
-    if len(raw) > len(polygons.size):
-        n_polygons = int(np.count_nonzero(polygons.size > 3))
-        notes.append(f"{counted(n_polygons, 'polygon')} cut into triangles")
+    for number, kind, done in (
+        (np.count_nonzero(polygons.size > 3), "polygon", "cut into triangles"),
+        (np.count_nonzero(polygons.size < 3), "face", "of fewer than three corners left out"),
+    ):
+        if number:
+            notes.append(f"{counted(int(number), kind)} {done}")
     return MeshFile(vertices, triangles, tuple(notes))
 
 
@@ -130,10 +134,13 @@ def read_mesh_mould(path: str | os.PathLike[str], unit: str | None = None, heal:
     healing: HealReport | None = None
     try:
         if heal:
-            from meshdrape.mould.heal import healed
+            from meshdrape.mould.heal import heal as healed
 
-            vertices, triangles, healing = healed(vertices, triangles, unit or "mm")
-        mould = Mould.from_arrays(vertices, triangles, unit or "mm")
+            factor = millimetres(unit or "mm")
+            vertices, triangles, healing = healed(factor * vertices, triangles)
+            mould = replace(Mould.from_arrays(vertices, triangles), unit=unit or "mm")
+        else:
+            mould = Mould.from_arrays(vertices, triangles, unit or "mm")
     except MouldError as error:
         msg = f"{path}: {error}"
         raise MouldError(msg) from error

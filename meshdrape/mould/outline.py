@@ -13,7 +13,7 @@ import numpy as np
 from meshdrape.mould.patch import Floats, Ints, Nodes, Patch
 
 if TYPE_CHECKING:
-    from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
+    from OCP.TopoDS import TopoDS_Edge
 
 CREASE = np.radians(1.0)  # faces that meet at less than this angle meet smoothly
 MOST_PROBES = 33  # places where an undivided edge is looked at; a quarter of a segment once it is divided
@@ -150,7 +150,9 @@ class EdgeNodes:
         from OCP.TopoDS import TopoDS
 
         forward = TopoDS.Edge_s(edge.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
-        first, last = (self._vertices.Add(v) - 1 for v in (TopExp.FirstVertex_s(forward), TopExp.LastVertex_s(forward)))
+        first, last = (
+            self._vertices.Add(v) - 1 for v in (TopExp.FirstVertex_s(forward), TopExp.LastVertex_s(forward))
+        )
         return first, last
 
     def _vertex_position(self, key: int) -> tuple[float, float, float]:
@@ -189,7 +191,9 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
             break
         middle = segments.mean(axis=1)
         done.append(middle)
-        segments = np.vstack([np.column_stack([segments[:, 0], middle]), np.column_stack([middle, segments[:, 1]])])
+        segments = np.vstack(
+            [np.column_stack([segments[:, 0], middle]), np.column_stack([middle, segments[:, 1]])]
+        )
     return np.sort(np.concatenate(done))
 
 
@@ -234,7 +238,11 @@ def _metric_length(passage: Passage, at: Floats) -> Floats:
     nodes = passage.patch.nodes(_uv(passage, at.ravel()))
     uv, metric = nodes.uv.reshape(*at.shape, 2), nodes.metric.reshape(*at.shape, 3)
     step, metric = np.diff(uv, axis=1), (metric[:, 1:] + metric[:, :-1]) / 2
-    square = metric[..., 0] * step[..., 0] ** 2 + 2 * metric[..., 1] * step.prod(axis=2) + metric[..., 2] * step[..., 1] ** 2
+    square = (
+        metric[..., 0] * step[..., 0] ** 2
+        + 2 * metric[..., 1] * step.prod(axis=2)
+        + metric[..., 2] * step[..., 1] ** 2
+    )
     length: Floats = np.sqrt(np.maximum(square, 0.0)).sum(axis=1)
     return length
 

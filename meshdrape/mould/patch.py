@@ -45,6 +45,7 @@ class Nodes:
     tangent: Floats
     metric: Floats
     curvature: Floats
+    singular: NDArray[np.bool_]
 
     def take(self, index: Ints) -> Nodes:
         """Nodes at the given places."""
@@ -53,7 +54,9 @@ class Nodes:
     @staticmethod
     def joined(parts: list[Nodes]) -> Nodes:
         """All nodes of the parts, one after the other."""
-        return Nodes(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Nodes)))
+        return Nodes(
+            *(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Nodes))
+        )
 
 
 class Patch:
@@ -107,8 +110,22 @@ class Patch:
             normal = np.cross(values[:, 1], values[:, 2])
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         tangent = values[:, 1:3] / self.scale[:, None]
-        second = np.stack([values[:, 3] / self.scale[0] ** 2, values[:, 5] / self.scale.prod(), values[:, 4] / self.scale[1] ** 2], axis=1)
-        first_form = np.stack([_dot(tangent[:, 0], tangent[:, 0]), _dot(tangent[:, 0], tangent[:, 1]), _dot(tangent[:, 1], tangent[:, 1])], axis=1)
+        second = np.stack(
+            [
+                values[:, 3] / self.scale[0] ** 2,
+                values[:, 5] / self.scale.prod(),
+                values[:, 4] / self.scale[1] ** 2,
+            ],
+            axis=1,
+        )
+        first_form = np.stack(
+            [
+                _dot(tangent[:, 0], tangent[:, 0]),
+                _dot(tangent[:, 0], tangent[:, 1]),
+                _dot(tangent[:, 1], tangent[:, 1]),
+            ],
+            axis=1,
+        )
         second_form = np.einsum("kij,kj->ki", second, normal)
         area = first_form[:, 0] * first_form[:, 2] - first_form[:, 1] ** 2
         gauss = (second_form[:, 0] * second_form[:, 2] - second_form[:, 1] ** 2) / area
@@ -119,7 +136,7 @@ class Patch:
         ) / area
         third_form = twice_mean[:, None] * second_form - gauss[:, None] * first_form
         metric = first_form / self.length**2 + third_form / self.angle**2
-        return Nodes(np.full(len(uv), self.index), uv, position, normal, tangent, metric, gauss)
+        return Nodes(np.full(len(uv), self.index), uv, position, normal, tangent, metric, gauss, singular)
 
 
 def _dot(a: Floats, b: Floats) -> Floats:

@@ -8,4 +8,15 @@ from meshdrape.weave.measures import Measures, measure
 from meshdrape.weave.net import Net
 from meshdrape.weave.status import NodeStatus
 
-__all__ = ["Audit", "Fabric", "Measures", "MouldField", "Net", "NodeStatus", "audit", "drape", "measure", "read_off"]
+__all__ = [
+    "Audit",
+    "Fabric",
+    "Measures",
+    "MouldField",
+    "Net",
+    "NodeStatus",
+    "audit",
+    "drape",
+    "measure",
+    "read_off",
+]

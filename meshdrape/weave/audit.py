@@ -81,8 +81,8 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
         if measured + through and time.perf_counter() - begun > seconds:
             break
         spacing = net.fabric.warp_spacing if family == WARP else net.fabric.weft_spacing
-        ends = [_point(net, i, j), _point(net, i + (family == WARP), j + (family == WEFT))]
-        distance, moved = surface_distance(net.surface, *ends, bound=spacing * (1 + 1e-6))
+        tail, head = _point(net, i, j), _point(net, i + (family == WARP), j + (family == WEFT))
+        distance, moved = surface_distance(net.surface, tail, head, bound=spacing * (1 + 1e-6))
         if moved > MOVED * spacing or not np.isfinite(distance):
             skipped += 1
             continue

@@ -2,8 +2,8 @@
 
 Each border triangle's plane goes on outward. At a border vertex neighbouring planes meet where they intersect, so that
 creases and rulings go on past the border and a developable mould stays developable; planes that are one and the same
-meet in a mitre; at a sharp convex corner they leave a gap that is filled flat. A hole is filled. Nodes out there hold the net together at the border and are
-trimmed afterwards.
+meet in a mitre; at a sharp convex corner they leave a gap that is filled flat. A hole is filled. Nodes out there hold
+the net together at the border and are trimmed afterwards.
 """
 
 from __future__ import annotations
@@ -104,7 +104,9 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         new_vertices.extend(at + depth * ray for ray in spread)
         arriving[i], leaving[i] = n, n + len(spread) - 1
         new_faces.extend((vertex, n + j, n + j + 1) for j in range(len(spread) - 1))
-    for a, b, outer_a, outer_b in zip(tail.tolist(), head.tolist(), leaving.tolist(), np.roll(arriving, -1).tolist(), strict=True):
+    for a, b, outer_a, outer_b in zip(
+        tail.tolist(), head.tolist(), leaving.tolist(), np.roll(arriving, -1).tolist(), strict=True
+    ):
         new_faces.append((b, a, outer_a))
         new_faces.append((b, outer_a, outer_b))
     return np.array(new_vertices), np.array(new_faces, dtype=np.int64)
@@ -148,7 +150,8 @@ def _triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:
     across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     across /= np.linalg.norm(across)
     flat = np.stack([points @ across, points @ np.cross(normal, across)], axis=1)
-    ears = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], dtype=np.uint32)).reshape(-1, 3).astype(np.int64)
+    corners = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], dtype=np.uint32))
+    ears = np.asarray(corners, dtype=np.int64).reshape(-1, 3)
     a, b, c = (flat[ears[:, k]] for k in range(3))
     area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     whole = float(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]))

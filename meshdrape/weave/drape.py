@@ -16,7 +16,13 @@ from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.generators import check_memory, empty_lattice, free_memory, generator_counts, lay_generators
+from meshdrape.weave.generators import (
+    check_memory,
+    empty_lattice,
+    free_memory,
+    generator_counts,
+    lay_generators,
+)
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net, run_kernel
 from meshdrape.weave.quadrants import fill
@@ -97,8 +103,8 @@ def drape(
     if distance > longest:
         near = ", ".join(f"{v:.6g}" for v in point.position(whole))
         msg = (
-            f"seed ({', '.join(f'{v:g}' for v in seed)}) lies {distance:.6g} mm from the mould, farther than one spacing "
-            f"({longest:g} mm); the nearest point is ({near})"
+            f"seed ({', '.join(f'{v:g}' for v in seed)}) lies {distance:.6g} mm from the mould, farther than "
+            f"one spacing ({longest:g} mm); the nearest point is ({near})"
         )
         raise StartError(msg)
     notes = []
@@ -106,7 +112,9 @@ def drape(
     if whole.n_components > 1:
         number = int(whole.face_component[point.face])
         part, part_face = whole.component(number)
-        notes.append(f"the mould has {whole.n_components} separate parts; draped the seed's, {len(part.faces)} triangles")
+        notes.append(
+            f"the mould has {whole.n_components} separate parts; draped the seed's, {len(part.faces)} triangles"
+        )
         point, _ = part.closest_point(seed)
     if direction is None:
         direction = default_direction(part, point.face)
@@ -138,7 +146,7 @@ def drape(
 def default_seed(surface: Surface) -> FloatArray:
     """The centroid of the surface, (3,) mm: projected, it is a seed near the middle of the mould."""
     centres = surface.vertices[surface.faces].mean(axis=1)
-    return np.average(centres, axis=0, weights=surface.face_area)
+    return np.asarray(np.average(centres, axis=0, weights=surface.face_area))
 
 
 def default_direction(surface: Surface, face: int) -> FloatArray:
@@ -147,11 +155,13 @@ def default_direction(surface: Surface, face: int) -> FloatArray:
     for axis in np.argsort(-extent):
         along = np.eye(3)[axis]
         if abs(float(along @ surface.face_normal[face])) < math.cos(math.radians(30.0)):
-            return along
-    return np.eye(3)[0]
+            return np.asarray(along)
+    return np.array([1.0, 0.0, 0.0])
 
 
-def _checked_extent(extent: tuple[float, float, float, float] | None) -> tuple[float, float, float, float] | None:
+def _checked_extent(
+    extent: tuple[float, float, float, float] | None,
+) -> tuple[float, float, float, float] | None:
     if extent is None:
         return None
     if len(extent) != 4 or not all(length >= 0 for length in extent):
@@ -185,7 +195,7 @@ def _room_wanted(lattice: Lattice, start: Start, counts: list[int]) -> tuple[int
     """Rows to add before and after, columns before and after: where a side has nodes on the mould, a quarter more."""
     status = lattice.status
     n_warp, n_weft = status.shape
-    i0, j0 = (int(v) for v in start.index)
+    i0, j0 = (int(v) for v in start.origin)
     have = (i0, n_warp - 1 - i0, j0, n_weft - 1 - j0)
     most = (counts[2], counts[0], counts[3], counts[1])
     sides = (status[0], status[-1], status[:, 0], status[:, -1])
@@ -206,16 +216,16 @@ def _grown(
     check_memory(*shape, fabric, memory)
     larger = empty_lattice(shape)
     window = (slice(before_i, before_i + n_warp), slice(before_j, before_j + n_weft))
-    for new, old in zip(larger, lattice, strict=True):
-        new[window] = old
-    i0, j0 = start.index[0] + before_i, start.index[1] + before_j
+    larger.face[window], larger.status[window] = lattice.face, lattice.status
+    larger.xy[window], larger.warp_out[window], larger.weft_out[window] = lattice.xy, lattice.warp_out, lattice.weft_out
+    i0, j0 = start.origin[0] + before_i, start.origin[1] + before_j
     # nothing beyond a generator's end is ever on that generator
     larger.status[:, j0][np.r_[0:before_i, before_i + n_warp : shape[0]]] = NodeStatus.OUTSIDE
     larger.status[i0, :][np.r_[0:before_j, before_j + n_weft : shape[1]]] = NodeStatus.OUTSIDE
     # bent edges are known by their place in the lattice
     cell, family = start.bent_key // 2, start.bent_key % 2
     i, j = cell // n_weft + before_i, cell % n_weft + before_j
-    moved = start._replace(index=np.array([i0, j0]), bent_key=2 * (i * shape[1] + j) + family)
+    moved = start._replace(origin=np.array([i0, j0]), bent_key=2 * (i * shape[1] + j) + family)
     return larger, moved
 
 
@@ -226,7 +236,15 @@ def _trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, thre
     run_kernel(
         emit.touching_cells,
         [
-            (surface.unfolding, lattice, start, a, fabric.warp_spacing, fabric.weft_spacing, touching[a : a + rows])
+            (
+                surface.unfolding,
+                lattice,
+                start,
+                a,
+                fabric.warp_spacing,
+                fabric.weft_spacing,
+                touching[a : a + rows],
+            )
             for a in range(0, n_warp - 1, rows)
         ],
         threads,

@@ -27,7 +27,7 @@ class Fabric:
         If a spacing is not positive and finite, or an angle is out of range.
     """
 
-    spacing: float | tuple[float, float]
+    spacing: float | tuple[float, ...]
     initial_angle: float = math.pi / 2
     locking_angle: float = math.radians(7.0)
 
@@ -47,7 +47,11 @@ class Fabric:
         if not 0 < self.locking_angle < math.pi / 2:
             msg = f"locking angle is {math.degrees(self.locking_angle):g} degrees; it must lie between 0 and 90"
             raise FabricError(msg)
-        object.__setattr__(self, "spacing", tuple(float(v) for v in spacings) if spacings[0] != spacings[1] else float(spacings[0]))
+        object.__setattr__(
+            self,
+            "spacing",
+            tuple(float(v) for v in spacings) if spacings[0] != spacings[1] else float(spacings[0]),
+        )
 
     @property
     def warp_spacing(self) -> float:

@@ -56,9 +56,7 @@ class MouldField:
         return float(self.area[self.covered].sum() / self.area.sum())
 
 
-def read_off(
-    measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_triangles: int = 500_000
-) -> MouldField:
+def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_triangles: int = 500_000) -> MouldField:
     """Fibre angles, shear and coverage on the triangles of the mould.
 
     Parameters
@@ -137,7 +135,5 @@ def _projected(axis: FloatArray, normal: FloatArray) -> FloatArray:
 
 def _angle_about(zero: FloatArray, direction: FloatArray, normal: FloatArray) -> FloatArray:
     """Angle from `zero` to `direction` about the normal, in (-pi/2, pi/2]: a fibre has no sense."""
-    angle = np.arctan2(
-        np.einsum("ij,ij->i", np.cross(zero, direction), normal), np.einsum("ij,ij->i", zero, direction)
-    )
+    angle = np.arctan2(np.einsum("ij,ij->i", np.cross(zero, direction), normal), np.einsum("ij,ij->i", zero, direction))
     return np.asarray(np.pi / 2 - np.mod(np.pi / 2 - angle, np.pi))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,9 +60,17 @@ def lay_generators(
     for half in range(4):
         n = counts[half]
         check_memory(n + 1, 1, fabric, memory)
-        fibre = (np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3)), np.zeros(n, dtype=np.bool_))
+        fibre: list[NDArray[Any]] = [np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3))]
+        fibre.append(np.zeros(n, dtype=np.bool_))
         _, set_nodes, _ = trace(
-            mesh, star.face[half], *star.xy[half], *star.out[half], star.far_edge[half], spacing[half], n, *fibre
+            mesh,
+            star.face[half],
+            *star.xy[half],
+            *star.out[half],
+            star.far_edge[half],
+            spacing[half],
+            n,
+            *fibre,
         )
         halves.append([array[:set_nodes] for array in fibre])
     plus_i, plus_j, minus_i, minus_j = (len(fibre[0]) for fibre in halves)
@@ -90,7 +100,7 @@ def lay_generators(
         else:
             lattice.weft_out[i0, j[:-1] - (sj < 0)] = out[:-1]
     start = Start(
-        index=np.array([i0, j0]),
+        origin=np.array([i0, j0]),
         face=star.face,
         xy=star.xy,
         out=star.out,
@@ -106,7 +116,7 @@ def lay_generators(
 
 def _keep_seed_edges(lattice: Lattice, start: Start, lengths: tuple[int, int, int, int]) -> None:
     """Keep the four edges at the seed, each in the frame in which its half-fibre starts."""
-    i0, j0 = start.index
+    i0, j0 = start.origin
     plus_i, plus_j, minus_i, minus_j = lengths
     if plus_i:
         lattice.warp_out[i0, j0] = start.out[0]
@@ -157,4 +167,3 @@ def free_memory() -> int:
     except OSError:
         pass
     return 4 * 2**30
-

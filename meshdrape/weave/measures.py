@@ -129,7 +129,16 @@ def measure(net: Net) -> Measures:
         net.in_threads(
             emit.cell_shear,
             [
-                (mesh, net.lattice, net.start, a, fabric.initial_angle, fabric.warp_spacing, fabric.weft_spacing, shear[a:b])
+                (
+                    mesh,
+                    net.lattice,
+                    net.start,
+                    a,
+                    fabric.initial_angle,
+                    fabric.warp_spacing,
+                    fabric.weft_spacing,
+                    shear[a:b],
+                )
                 for a, b in net.row_blocks(0, n_warp - 1)
             ],
         )

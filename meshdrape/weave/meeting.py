@@ -10,8 +10,9 @@ from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.status import NodeStatus
 
-# A disk whose angle defects sum to less than this, rad, cannot turn a sheet round on itself.
-HARMLESS_CURVATURE = np.pi / 2
+# A quadrant folds once it encloses pi / 2 of curvature. A disk with less than this in all, rad, cannot bring a sheet
+# round on itself.
+HARMLESS_CURVATURE = np.pi
 # On faces below this many spacings across, far-apart indices on one face are proof either way,
 SMALL_FACE = 2.0
 # and worth looking for in a net of more than this many nodes.
@@ -41,19 +42,21 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     window = np.empty((len(diameter), 4), dtype=np.int64)
     # collar faces reach far out; on them windows say nothing
     measured = np.where(np.arange(len(diameter)) < len(mould.faces), diameter, np.inf)
-    if small and np.count_nonzero(lattice.status <= NodeStatus.OFF_MOULD) > LARGE_NET and not spread_on_faces(lattice, window, measured, spacing):
+    if (
+        small
+        and np.count_nonzero(lattice.status <= NodeStatus.OFF_MOULD) > LARGE_NET
+        and not spread_on_faces(lattice, window, measured, spacing)
+    ):
         return 0
     i, j = np.nonzero(lattice.status <= NodeStatus.OFF_MOULD)
-    i0, j0 = start.index
+    i0, j0 = start.origin
     ring = np.abs(i - i0) + np.abs(j - j0)
     order = np.stack([i, j], axis=1)[np.lexsort((j, i, ring))]
     position = np.full((*lattice.status.shape, 3), np.nan)
     frame = mesh.frame[lattice.face[i, j]]
-    position[i, j] = (
-        frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
-    )
+    position[i, j] = frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
     radius = max(fabric.warp_spacing, fabric.weft_spacing)
-    return int(stop_where_met(mesh, lattice, start.index, position, order, radius))
+    return int(stop_where_met(mesh, lattice, start.origin, position, order, radius))
 
 
 def _cannot_meet(mould: Surface) -> bool:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,7 +68,7 @@ class Net:
     @property
     def seed_index(self) -> tuple[int, int]:
         """(i, j) of the seed node."""
-        return int(self.start.index[0]), int(self.start.index[1])
+        return int(self.start.origin[0]), int(self.start.origin[1])
 
     @property
     def node_status(self) -> NDArray[np.uint8]:
@@ -122,7 +122,7 @@ class Net:
         for a in range(first, last, rows):
             yield a, min(a + rows, last)
 
-    def in_threads(self, kernel: object, tasks: list[tuple[object, ...]]) -> None:
+    def in_threads(self, kernel: Callable[..., Any], tasks: Sequence[tuple[Any, ...]]) -> None:
         """Call a kernel that releases the lock with each argument tuple, on the net's threads."""
         run_kernel(kernel, tasks, self.threads)
 
@@ -132,15 +132,16 @@ class Net:
 
     def __repr__(self) -> str:
         n_warp, n_weft = self.shape
-        return f"Net({n_warp} x {n_weft}, {self.count(NodeStatus.PLACED)} nodes on the mould, spacing {self.fabric.spacing} mm)"
+        placed = self.count(NodeStatus.PLACED)
+        return f"Net({n_warp} x {n_weft}, {placed} nodes on the mould, spacing {self.fabric.spacing} mm)"
 
 
-def run_kernel(kernel: object, tasks: list[tuple[object, ...]], threads: int) -> None:
+def run_kernel(kernel: Callable[..., Any], tasks: Sequence[tuple[Any, ...]], threads: int) -> None:
     """Call a kernel with each argument tuple, on up to `threads` threads."""
     if threads == 1 or len(tasks) == 1:
         for task in tasks:
-            kernel(*task)  # type: ignore[operator]
+            kernel(*task)
         return
     with ThreadPoolExecutor(threads) as pool:
-        for done in [pool.submit(kernel, *task) for task in tasks]:  # type: ignore[arg-type]
+        for done in [pool.submit(kernel, *task) for task in tasks]:
             done.result()

@@ -57,7 +57,7 @@ def fill(
         Their number.
     """
     bent = BentEdges(start)
-    i0, j0 = (int(v) for v in start.index)
+    i0, j0 = (int(v) for v in start.origin)
     n_warp, n_weft = lattice.status.shape
     spans = {1: (n_warp - 1 - i0, n_weft - 1 - j0), -1: (i0, j0)}
     tolerance = gap_tolerance(surface, fabric)
@@ -94,7 +94,10 @@ def fill(
             for future in finished:
                 tile = running.pop(future)
                 placed, settled = placed + future.result()[0], settled + future.result()[1]
-                for child in (_Tile(tile.si, tile.sj, tile.a + 1, tile.b), _Tile(tile.si, tile.sj, tile.a, tile.b + 1)):
+                for child in (
+                    _Tile(tile.si, tile.sj, tile.a + 1, tile.b),
+                    _Tile(tile.si, tile.sj, tile.a, tile.b + 1),
+                ):
                     if child in waiting:
                         waiting[child] -= 1
                         if waiting[child] == 0:
@@ -126,7 +129,14 @@ class BentEdges:
 
 
 def _settle_node(
-    surface: Surface, fabric: Fabric, lattice: Lattice, bent: BentEdges, i: int, j: int, tile: _Tile, slack: float
+    surface: Surface,
+    fabric: Fabric,
+    lattice: Lattice,
+    bent: BentEdges,
+    i: int,
+    j: int,
+    tile: _Tile,
+    slack: float,
 ) -> bool:
     """Have libigl place a node that straight paths did not close on; whether it did."""
 
@@ -140,7 +150,10 @@ def _settle_node(
     if found is None:
         return False
     lattice.face[i, j], lattice.xy[i, j] = found.place[0], found.place[1:]
-    for family, edge, parent, step in ((WARP, found.warp_edge, a, tile.si), (WEFT, found.weft_edge, b, tile.sj)):
+    for family, edge, parent, step in (
+        (WARP, found.warp_edge, a, tile.si),
+        (WEFT, found.weft_edge, b, tile.sj),
+    ):
         keep_edge(lattice, bent.start, family, *parent, step, *edge.leave, *edge.arrive)
         if edge.bent:
             at = (min(i, parent[0]), min(j, parent[1]))

@@ -169,7 +169,10 @@ class NodeSearch:
             end = (x + length * dx, y + length * dy)
             off = target - frame[:3]
             gap = np.array([off @ frame[3:6] - end[0], off @ frame[6:9] - end[1]])
-            if float(np.linalg.norm(target - frame[:3] - end[0] * frame[3:6] - end[1] * frame[6:9])) <= STRAIGHT * length:
+            if (
+                float(np.linalg.norm(target - frame[:3] - end[0] * frame[3:6] - end[1] * frame[6:9]))
+                <= STRAIGHT * length
+            ):
                 return Edge(straight, arrive, bent=False)
             turn = float(gap @ np.array([-dy, dx])) / length
             straight = straight + turn * np.array([-straight[1], straight[0]])
@@ -196,7 +199,7 @@ class NodeSearch:
 
 
 def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
-    """The place reached by walking straight on by `move` (2,), mm in the frame of the place's face; None off the surface."""
+    """The place straight on by `move` (2,), mm in the frame of the place's face; None off the surface."""
     length = float(np.linalg.norm(move))
     if length == 0:
         return place

@@ -64,9 +64,7 @@ def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initi
     if where[edge] <= SNAP:
         # on the edge opposite that corner: enter whichever face the direction points into more
         across = int(surface.face_neighbour[face, (edge + 1) % 3])
-        if across >= 0 and _into(surface, across // 3, across % 3, along) > _into(
-            surface, face, (edge + 1) % 3, along
-        ):
+        if across >= 0 and _into(surface, across // 3, across % 3, along) > _into(surface, face, (edge + 1) % 3, along):
             position = point.position(surface)
             face = across // 3
             x, y = _in_frame(surface, face, position)

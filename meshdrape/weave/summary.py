@@ -36,7 +36,12 @@ def fabric_missing(net: Net) -> bool:
 
 
 def summarise(
-    measures: Measures, field: MouldField, audit: Audit, balance: Balance, seconds: dict[str, float], command: str
+    measures: Measures,
+    field: MouldField,
+    audit: Audit,
+    balance: Balance,
+    seconds: dict[str, float],
+    command: str,
 ) -> dict[str, Any]:
     """Everything the summary states, ready for JSON: lengths in mm, areas in mm2, angles in degrees (``_deg``).
 
@@ -125,7 +130,9 @@ def _first_places(net: Net) -> dict[str, dict[str, Any]]:
             continue
         n = int(np.argmin(np.abs(i - i0) + np.abs(j - j0)))
         # one step back towards the seed lies a parent, and the first to fail has both
-        parent = (int(i[n] - np.sign(i[n] - i0)), int(j[n])) if i[n] != i0 else (int(i[n]), int(j[n] - np.sign(j[n] - j0)))
+        parent = (
+            (int(i[n] - np.sign(i[n] - i0)), int(j[n])) if i[n] != i0 else (int(i[n]), int(j[n] - np.sign(j[n] - j0)))
+        )
         place = net.positions(parent[0], parent[0] + 1)[0, parent[1]]
         found[status.name] = {"node": [int(i[n] - i0), int(j[n] - j0)], "near": place.tolist()}
     return found

@@ -38,7 +38,7 @@ def read_obj(content: bytes) -> Polygons:
 
 
 def _index(number: int, n_vertices: int) -> int:
-    """Return the vertex, from 0, of a number that counts from 1, or back from the last vertex so far from -1."""
+    """Return the vertex, from 0, of a number that counts from 1, or back from the last so far from -1."""
     if number == 0 or number < -n_vertices or number > 1 << 60:
         msg = f"no vertex {number}"
         raise ValueError(msg)
@@ -46,5 +46,4 @@ def _index(number: int, n_vertices: int) -> int:
 
 
 def _shown(line: bytes) -> str:
-    text = line[:40].decode("ascii", "backslashreplace")
-    return ascii(text)
+    return ascii(line[:40].decode("latin-1"))

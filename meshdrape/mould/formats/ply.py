@@ -27,6 +27,11 @@ _FORMATS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian"
 _CORNERS: Final = ("vertex_indices", "vertex_index")
 
 
+# A column holds one value a row; a list column, all rows' values and the length of each row's list.
+_Column = NDArray[Any] | tuple[NDArray[Any], NDArray[Any]]
+_Columns = dict[str, _Column]
+
+
 @dataclass(frozen=True)
 class _Property:
     name: str
@@ -47,10 +52,10 @@ class _Element:
 def read_ply(content: bytes) -> Polygons:
     """Return the polygons of a PLY file, coordinates to the last bit."""
     order, elements, body = _header(content)
-    columns = _text_columns(elements, body.split()) if not order else _binary_columns(elements, body, order)
+    decoded = _from_bytes(elements, body, order) if order else _from_text(elements, body.split())
     vertices: Floats | None = None
     faces: tuple[Ints, Ints] | None = None
-    for element, values in columns:
+    for element, values in decoded:
         if element.name == "vertex":
             missing = [axis for axis in "xyz" if axis not in values]
             if missing:
@@ -69,13 +74,8 @@ def read_ply(content: bytes) -> Polygons:
     return Polygons(vertices, *faces)
 
 
-# A column holds one value a row; a list column, all rows' values and the length of each row's list.
-_Column = NDArray[Any] | tuple[NDArray[Any], NDArray[Any]]
-_Columns = Iterator[tuple[_Element, dict[str, _Column]]]
-
-
 def _header(content: bytes) -> tuple[str, list[_Element], bytes]:
-    """Byte order ("" for text), elements, and what follows the header."""
+    """Return the byte order ("" for text), the elements, and what follows the header."""
     end = content.find(b"end_header")
     newline = content.find(b"\n", end)
     if not content.startswith(b"ply") or end < 0 or newline < 0:
@@ -89,14 +89,16 @@ def _header(content: bytes) -> tuple[str, list[_Element], bytes]:
                 order = _FORMATS[name]
             case ["element", name, count] if count.isdecimal():
                 elements.append(_Element(name, int(count)))
-            case ["property", "list", count_type, value_type, name] if elements:
+            case ["property", "list", count_type, value_type, name] if (
+                elements and _CODE.get(count_type, "f")[0] != "f" and value_type in _CODE
+            ):
                 elements[-1].properties.append(_Property(name, _CODE[value_type], _CODE[count_type]))
-            case ["property", value_type, name] if elements:
+            case ["property", value_type, name] if elements and value_type in _CODE:
                 elements[-1].properties.append(_Property(name, _CODE[value_type], None))
             case [] | ["comment" | "obj_info", *_]:
                 pass
             case _:
-                msg = f"its header has the line {ascii(line[:40])}"
+                msg = f"its header has the line {line[:40]!a}"
                 raise ValueError(msg)
     if order is None:
         msg = "its header names no format"
@@ -110,7 +112,7 @@ def _truncated(element: _Element) -> ValueError:
     )
 
 
-def _text_columns(elements: list[_Element], words: list[bytes]) -> _Columns:
+def _from_text(elements: list[_Element], words: list[bytes]) -> Iterator[tuple[_Element, _Columns]]:
     at = 0
     for element in elements:
         if not element.has_lists():
@@ -118,114 +120,106 @@ def _text_columns(elements: list[_Element], words: list[bytes]) -> _Columns:
             end = at + element.count * width
             if end > len(words):
                 raise _truncated(element)
-            table = np.array([float(word) for word in words[at:end]]).reshape(element.count, width)
+            table = np.array([float(word) for word in words[at:end]]).reshape(-1, max(width, 1))
             yield element, {p.name: table[:, k] for k, p in enumerate(element.properties)}
             at = end
             continue
-        rows: dict[str, tuple[list[float], list[int]]] = {p.name: ([], []) for p in element.properties}
+        rows = _Rows(element)
         for _ in range(element.count):
-            for p in element.properties:
-                if at >= len(words):
-                    raise _truncated(element)
-                length = int(words[at]) if p.count_code else 1
-                at += 1 if p.count_code else 0
+            for p, values, lengths in rows.columns:
+                length = 1
+                if p.count_code:
+                    length = int(words[at]) if at < len(words) else -1
+                    at += 1
                 if length < 0 or at + length > len(words):
                     raise _truncated(element)
-                rows[p.name][0].extend(map(float, words[at : at + length]))
-                rows[p.name][1].append(length)
+                values.extend(map(float, words[at : at + length]))
+                lengths.append(length)
                 at += length
-        yield element, _columns(element, rows)
+        yield element, rows.arrays()
 
 
-def _binary_columns(elements: list[_Element], body: bytes, order: str) -> _Columns:
+def _from_bytes(elements: list[_Element], body: bytes, order: str) -> Iterator[tuple[_Element, _Columns]]:
     at = 0
     for element in elements:
-        lengths = _first_lengths(element, body, at, order)
-        dtype = np.dtype(
-            [
-                field
-                for k, p in enumerate(element.properties)
-                for field in ([(f"n{k}", order + p.count_code)] if p.count_code else [])
-                + [(f"v{k}", order + p.code, (lengths[k],) if p.count_code else ())]
-            ]
-        )
-        end = at + element.count * dtype.itemsize
-        if end <= len(body):
-            table = (
-                np.frombuffer(body, dtype=dtype, count=element.count, offset=at)
-                if dtype.itemsize
-                else np.empty(0)
-            )
-            lists = [k for k, p in enumerate(element.properties) if p.count_code]
-            if all((table[f"n{k}"] == lengths[k]).all() for k in lists):
-                # every list of a property has the length of the first one
-                yield (
-                    element,
-                    {
-                        p.name: (table[f"v{k}"].ravel(), table[f"n{k}"]) if p.count_code else table[f"v{k}"]
-                        for k, p in enumerate(element.properties)
-                    },
-                )
-                at = end
-                continue
-        if not element.has_lists():
-            raise _truncated(element)
-        rows, at = _binary_rows(element, body, at, order)
-        yield element, _columns(element, rows)
+        if not element.properties or not element.count:
+            yield element, _Rows(element).arrays()
+            continue
+        columns, end = _equal_rows(element, body, at, order)
+        if columns is None:
+            if not element.has_lists():
+                raise _truncated(element)
+            columns, end = _unequal_rows(element, body, at, order)
+        yield element, columns
+        at = end
 
 
-def _first_lengths(element: _Element, body: bytes, at: int, order: str) -> list[int]:
-    """Lengths of the lists of an element's first row, 0 for single values."""
-    lengths = []
-    for p in element.properties:
-        length = 0
-        if p.count_code and element.count:
-            size = np.dtype(p.count_code).itemsize
-            if at + size > len(body):
-                raise _truncated(element)
-            length = int(np.frombuffer(body, dtype=order + p.count_code, count=1, offset=at)[0])
-            if not 0 <= length <= len(body):
-                raise _truncated(element)
-            at += size
+def _equal_rows(element: _Element, body: bytes, at: int, order: str) -> tuple[_Columns | None, int]:
+    """Columns of an element each of whose lists is as long in every row as in the first, and where it ends.
+
+    None where that is not so, or the body is too short for it.
+    """
+    lengths: list[int] = []
+    fields: list[tuple[Any, ...]] = []
+    start = at
+    for k, p in enumerate(element.properties):
+        length = 1
+        if p.count_code:
+            size = int(p.count_code[1])
+            length = int.from_bytes(body[start : start + size], "little" if order == "<" else "big")
+            fields.append((f"length{k}", order + p.count_code))
+            start += size
+        fields.append((f"values{k}", order + p.code, (length,)))
         lengths.append(length)
-        at += np.dtype(p.code).itemsize * (length if p.count_code else 1)
-    return lengths
+        start += int(p.code[1]) * length
+    end = at + element.count * (start - at)
+    if end > len(body):
+        return None, at
+    table: Any = np.frombuffer(body, np.dtype(fields), element.count, at)
+    columns: _Columns = {}
+    for k, p in enumerate(element.properties):
+        values = table[f"values{k}"]
+        if not p.count_code:
+            columns[p.name] = values[:, 0]
+        elif (table[f"length{k}"] == lengths[k]).all():
+            columns[p.name] = values.ravel(), table[f"length{k}"]
+        else:
+            return None, at
+    return columns, end
 
 
-def _binary_rows(
-    element: _Element, body: bytes, at: int, order: str
-) -> tuple[dict[str, tuple[list[float], list[int]]], int]:
-    """All rows, one by one, of an element whose lists differ in length; and where it ends."""
-    rows: dict[str, tuple[list[float], list[int]]] = {p.name: ([], []) for p in element.properties}
-    plan = [
-        (
-            *rows[p.name],
-            struct.Struct(order + _STRUCT[p.count_code]) if p.count_code else None,
-            order,
-            _STRUCT[p.code],
-        )
-        for p in element.properties
-    ]
+def _unequal_rows(element: _Element, body: bytes, at: int, order: str) -> tuple[_Columns, int]:
+    """Columns of an element, row by row, and where it ends."""
+    rows = _Rows(element)
     try:
         for _ in range(element.count):
-            for values, lengths, counter, byte_order, code in plan:
+            for p, values, lengths in rows.columns:
                 length = 1
-                if counter:
-                    length = int(counter.unpack_from(body, at)[0])
-                    at += counter.size
-                form = f"{byte_order}{length}{code}"
-                values.extend(struct.unpack_from(form, body, at))
+                if p.count_code:
+                    (length,) = struct.unpack_from(order + _STRUCT[p.count_code], body, at)
+                    at += int(p.count_code[1])
+                if length < 0:
+                    raise _truncated(element)
+                values.extend(struct.unpack_from(f"{order}{length}{_STRUCT[p.code]}", body, at))
                 lengths.append(length)
-                at += struct.calcsize(form)
+                at += length * int(p.code[1])
     except struct.error as error:
         raise _truncated(element) from error
-    return rows, at
+    return rows.arrays(), at
 
 
-def _columns(element: _Element, rows: dict[str, tuple[list[float], list[int]]]) -> dict[str, _Column]:
-    return {
-        p.name: (np.array(rows[p.name][0]), np.array(rows[p.name][1], dtype=np.int64))
-        if p.count_code
-        else np.array(rows[p.name][0])
-        for p in element.properties
-    }
+class _Rows:
+    """Columns that grow row by row."""
+
+    def __init__(self, element: _Element) -> None:
+        self.columns: list[tuple[_Property, list[float], list[int]]] = [
+            (p, [], []) for p in element.properties
+        ]
+
+    def arrays(self) -> _Columns:
+        return {
+            p.name: (np.array(values), np.array(lengths, dtype=np.int64))
+            if p.count_code
+            else np.array(values)
+            for p, values, lengths in self.columns
+        }

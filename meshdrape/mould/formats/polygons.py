@@ -95,4 +95,4 @@ def _ears(vertices: Floats, polygon: Ints) -> Ints:
     u, v = flat[ears[:, 1]] - flat[ears[:, 0]], flat[ears[:, 2]] - flat[ears[:, 0]]
     backwards = u[:, 0] * v[:, 1] < u[:, 1] * v[:, 0]
     ears[backwards] = ears[backwards][:, ::-1]
-    return polygon[ears]
+    return np.asarray(polygon[ears])

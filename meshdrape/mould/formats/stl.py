@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from meshdrape.mould.formats.polygons import Polygons
+from meshdrape.mould.formats.polygons import Floats, Polygons
 
 _HEADER: Final = 84  # bytes: 80 of text and the number of triangles
 _FACET: Final = np.dtype([("normal", "<f4", (3,)), ("corner", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -31,7 +31,7 @@ def read_stl(content: bytes) -> Polygons:
         raise ValueError(msg)
     said = _HEADER + count * _FACET.itemsize
     state = "truncated" if len(content) < said else "damaged, or no STL file"
-    msg = f"{state}: its header says {count:,} triangles in {said:,} bytes, but there are {len(content):,} bytes"
+    msg = f"{state}: its header says {count:,} triangles, {said:,} bytes, but it has {len(content):,} bytes"
     raise ValueError(msg)
 
 
@@ -49,5 +49,5 @@ def _text(content: bytes) -> Polygons:
     return _of_corners(np.array([[float(x) for x in row] for row in found], dtype=np.float64).reshape(-1, 3))
 
 
-def _of_corners(vertices: np.typing.NDArray[np.float64]) -> Polygons:
+def _of_corners(vertices: Floats) -> Polygons:
     return Polygons.of_triangles(vertices, np.arange(len(vertices)).reshape(-1, 3))
