@@ -136,7 +136,7 @@ def readme(shapes: dict[str, cq.Workplane], folder: Path) -> str:
         "",
         "Of the shapes as designed; a tessellation comes as near as its tolerances allow.",
         "",
-        f"| mould | {' | '.join(name.lower() for name in FACTS)} |",
+        f"| Mould | {' | '.join(FACTS)} |",
         "|---|" + "---|" * len(FACTS),
     ]
     for script in dict.fromkeys(sample.script for sample in SAMPLES):
@@ -151,7 +151,7 @@ def readme(shapes: dict[str, cq.Workplane], folder: Path) -> str:
         "The areas are those Open CASCADE integrates over the faces. STL files are binary, in single",
         "precision.",
         "",
-        "| STEP | CAD faces: id, name, kind, area in mm² | STL | chord, angle tolerance | triangles |",
+        "| STEP | CAD faces: id, name, kind, area in mm² | STL | Chord, angle tolerance | Triangles |",
         "|---|---|---|---|---|",
     ]
     for sample in SAMPLES:

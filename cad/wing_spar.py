@@ -136,7 +136,7 @@ def named_profile(parameter: str, name: str, a: float, radius: float, span: floa
         return lambda y: a * y**2
     if name == "arc":
         if not radius > span:
-            msg = f"radius {radius} of the arc: must be larger than the span, {span}"
+            msg = f"{parameter.removesuffix('profile')}radius={radius}: must be larger than the span, {span}"
             raise ValueError(msg)
         return lambda y: radius - np.sqrt(radius**2 - y**2)
     also = ", origami" if parameter == "spar_profile" else ""

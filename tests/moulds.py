@@ -215,10 +215,20 @@ def cap(level: int = 4, radius: float = 1000.0, depth: float = 0.25) -> Mesh:
     return ball.kept(ball.vertices[ball.triangles][..., 2].min(axis=1) > (1 - depth) * radius)
 
 
-def hypar(k: float = 1.0, half: float = 1.3, n: int = 80, scale: float = 1000.0) -> Mesh:
-    """z = k x y in units of `scale` mm over |x|, |y| <= half; n cells a side, so that for even n vertices lie on both axes."""
+def hypar(k: float = 1.0, half: float = 1.3, n: int = 80, scale: float = 1000.0, symmetric: bool = False) -> Mesh:
+    """z = k x y in units of `scale` mm over |x|, |y| <= half; n cells a side, so that for even n vertices lie on both axes.
+
+    The diagonals all run one way, or, for even n, away from the middle, which keeps the surface's symmetry.
+    """
     side = np.linspace(-half, half, n + 1)
-    return grid(side, side, lambda x, y: (scale * x, scale * y, scale * k * x * y))
+    mesh = grid(side, side, lambda x, y: (scale * x, scale * y, scale * k * x * y))
+    if not symmetric:
+        return mesh
+    first, second = np.split(mesh.triangles.copy(), 2)
+    a, b, c, d = first[:, 0], first[:, 1], first[:, 2], second[:, 2]
+    across = np.prod(mesh.vertices[a, :2] + mesh.vertices[c, :2], axis=1) < 0
+    first[across], second[across] = np.stack([a, b, d], 1)[across], np.stack([b, c, d], 1)[across]
+    return Mesh(mesh.vertices, np.concatenate([first, second]))
 
 
 def bumpy(seed: int = 0, size: float = 200.0, n: int = 24, height: float = 18.0, jitter: float = 0.25) -> Mesh:

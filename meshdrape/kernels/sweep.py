@@ -179,6 +179,10 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 continue
             has_a = status[ia, j] <= OFF_MOULD
             has_b = status[i, jb] <= OFF_MOULD
+            if not has_a and not has_b:
+                known = False
+                status[i, j] = OUTSIDE if status[ia, j] == OUTSIDE and status[i, jb] == OUTSIDE else NOT_REACHED
+                continue
             has_d = status[ia, jb] <= OFF_MOULD
             if not (has_a and has_b and has_d):
                 known = False

@@ -29,7 +29,7 @@ FLIP_GAIN = 1e-6  # rad of opposite angle a flip must gain, so that round-off ca
 THINNEST = (
     1e-6  # smallest share a triangle may have of its quadrilateral in (u, v): less is a collinear corner
 )
-MAX_ROUNDS = 500
+MAX_ROUNDS = 100_000
 
 
 Evaluate = Callable[[Ints, Floats], Nodes]
@@ -54,13 +54,14 @@ class Facets:
         """
         if touched is None:
             touched = np.arange(len(self.triangles))
+        rng = np.random.default_rng(0)
         for _ in range(MAX_ROUNDS):
             edge = self._inner_edges(touched)
             a, b, c, d = self._quad(edge)
             gain = self._gain(a, b, c, d)
             wanted = (gain > FLIP_GAIN) & self._convex(a, b, c, d)
             edge, gain = edge[wanted], gain[wanted]
-            edge = edge[self._independent(edge, gain)]
+            edge = edge[self._independent(edge, rng.random(len(edge)))]
             if not len(edge):
                 return
             touched = self._flip(edge)

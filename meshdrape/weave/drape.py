@@ -11,34 +11,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
-from meshdrape.kernels import emit
-from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
-from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.generators import (
-    check_memory,
-    empty_lattice,
-    free_memory,
-    generator_counts,
-    lay_generators,
-)
+from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
-from meshdrape.weave.net import Net, run_kernel
-from meshdrape.weave.quadrants import fill
-from meshdrape.weave.start import seed_star
-from meshdrape.weave.status import NodeStatus
+from meshdrape.weave.net import Net
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
 
 FloatArray = NDArray[np.float64]
-
-# Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
-# find a place on it; two more carry the hem.
-COLLAR_DEPTH = 4.0
-# Cells of cloth kept past the last that touches the mould.
-HEM = 2
 
 
 def drape(
@@ -118,15 +100,11 @@ def drape(
         point, _ = part.closest_point(seed)
     if direction is None:
         direction = default_direction(part, point.face)
-    surface = extended(part, COLLAR_DEPTH * longest)
-    star = seed_star(surface, point, direction, fabric.initial_angle)
-    frame = surface.unfolding.frame[star.face[0]]
-    memory = free_memory()
-    counts = generator_counts(part, fabric, extent)
-    lattice, start = lay_generators(surface, fabric, star, counts, memory)
-    lattice, start, settled = _fill_all(surface, fabric, lattice, start, counts, memory, threads, progress)
+    laid = lay(part, fabric, point, direction, extent, threads, progress)
+    surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
-    _trim(surface, fabric, lattice, start, threads)
+    trim(surface, fabric, lattice, start, threads)
+    frame = surface.unfolding.frame[start.face[0]]
     return Net(
         mould=mould,
         fabric=fabric,
@@ -136,9 +114,9 @@ def drape(
         start=start,
         seed=point.position(part),
         seed_distance=distance,
-        direction=star.out[0, 0] * frame[3:6] + star.out[0, 1] * frame[6:9],
+        direction=start.out[0, 0] * frame[3:6] + start.out[0, 1] * frame[6:9],
         notes=tuple(notes),
-        settled_by_libigl=settled,
+        settled_by_libigl=laid.settled,
         threads=threads,
     )
 
@@ -168,85 +146,3 @@ def _checked_extent(
         msg = f"extent {tuple(extent)} must be four lengths in mm, none negative: warp-, warp+, weft-, weft+"
         raise StartError(msg)
     return extent
-
-
-def _fill_all(
-    surface: Surface,
-    fabric: Fabric,
-    lattice: Lattice,
-    start: Start,
-    counts: list[int],
-    memory: int,
-    threads: int,
-    progress: Callable[[int], None] | None,
-) -> tuple[Lattice, Start, int]:
-    """Fill the quadrants; where the mould goes on past the generators' ends, give the lattice room and fill on."""
-    settled = 0
-    while True:
-        start, more = fill(surface, fabric, lattice, start, threads, progress)
-        settled += more
-        grow = _room_wanted(lattice, start, counts)
-        if not any(grow):
-            return lattice, start, settled
-        lattice, start = _grown(lattice, start, grow, fabric, memory)
-
-
-def _room_wanted(lattice: Lattice, start: Start, counts: list[int]) -> tuple[int, int, int, int]:
-    """Rows to add before and after, columns before and after: where a side has nodes on the mould, a quarter more."""
-    status = lattice.status
-    n_warp, n_weft = status.shape
-    i0, j0 = (int(v) for v in start.origin)
-    have = (i0, n_warp - 1 - i0, j0, n_weft - 1 - j0)
-    most = (counts[2], counts[0], counts[3], counts[1])
-    sides = (status[0], status[-1], status[:, 0], status[:, -1])
-    length = (n_warp, n_warp, n_weft, n_weft)
-    before_i, after_i, before_j, after_j = (
-        min(max(8, n // 4), limit - got) if (side == NodeStatus.PLACED).any() else 0
-        for side, n, limit, got in zip(sides, length, most, have, strict=True)
-    )
-    return before_i, after_i, before_j, after_j
-
-
-def _grown(
-    lattice: Lattice, start: Start, grow: tuple[int, int, int, int], fabric: Fabric, memory: int
-) -> tuple[Lattice, Start]:
-    before_i, after_i, before_j, after_j = grow
-    n_warp, n_weft = lattice.status.shape
-    shape = (n_warp + before_i + after_i, n_weft + before_j + after_j)
-    check_memory(*shape, fabric, memory)
-    larger = empty_lattice(shape)
-    window = (slice(before_i, before_i + n_warp), slice(before_j, before_j + n_weft))
-    larger.face[window], larger.status[window] = lattice.face, lattice.status
-    larger.xy[window], larger.warp_out[window], larger.weft_out[window] = lattice.xy, lattice.warp_out, lattice.weft_out
-    i0, j0 = start.origin[0] + before_i, start.origin[1] + before_j
-    # nothing beyond a generator's end is ever on that generator
-    larger.status[:, j0][np.r_[0:before_i, before_i + n_warp : shape[0]]] = NodeStatus.OUTSIDE
-    larger.status[i0, :][np.r_[0:before_j, before_j + n_weft : shape[1]]] = NodeStatus.OUTSIDE
-    # bent edges are known by their place in the lattice
-    cell, family = start.bent_key // 2, start.bent_key % 2
-    i, j = cell // n_weft + before_i, cell % n_weft + before_j
-    moved = start._replace(origin=np.array([i0, j0]), bent_key=2 * (i * shape[1] + j) + family)
-    return larger, moved
-
-
-def _trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, threads: int) -> None:
-    n_warp, n_weft = lattice.status.shape
-    touching = np.empty((max(n_warp - 1, 0), max(n_weft - 1, 0)), dtype=np.bool_)
-    rows = max(1, -(-(n_warp - 1) // (4 * threads)))
-    run_kernel(
-        emit.touching_cells,
-        [
-            (
-                surface.unfolding,
-                lattice,
-                start,
-                a,
-                fabric.warp_spacing,
-                fabric.weft_spacing,
-                touching[a : a + rows],
-            )
-            for a in range(0, n_warp - 1, rows)
-        ],
-        threads,
-    )
-    emit.trim(lattice, touching, HEM)

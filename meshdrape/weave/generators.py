@@ -24,7 +24,11 @@ BORDER_SLACK = 1e-6
 SENSE = ((1, 0), (0, 1), (-1, 0), (0, -1))
 
 
-def generator_counts(surface: Surface, fabric: Fabric, extent: tuple[float, float, float, float] | None) -> list[int]:
+Extent = tuple[float, float, float, float]
+"""Lengths of cloth from the seed, mm: warp-, warp+, weft-, weft+."""
+
+
+def generator_counts(surface: Surface, fabric: Fabric, extent: Extent | None) -> list[int]:
     """Most nodes each half-fibre (+warp, +weft, -warp, -weft) can have.
 
     Bounded by the cloth's extent (warp-, warp+, weft-, weft+ from the seed, mm), else by pi times the diagonal of the
@@ -40,7 +44,12 @@ def generator_counts(surface: Surface, fabric: Fabric, extent: tuple[float, floa
 
 
 def lay_generators(
-    surface: Surface, fabric: Fabric, star: SeedStar, counts: list[int], memory: int
+    surface: Surface,
+    fabric: Fabric,
+    star: SeedStar,
+    counts: list[int],
+    memory: int,
+    reach: Extent | None = None,
 ) -> tuple[Lattice, Start]:
     """A lattice with the seed and both generators in place; everything else NOT_REACHED.
 
@@ -48,6 +57,8 @@ def lay_generators(
     ----------
     memory : int
         Bytes the lattice may take.
+    reach : (warp-, warp+, weft-, weft+), mm, optional
+        Room to leave where the net is expected to go on past a generator's end.
 
     Raises
     ------
@@ -62,7 +73,7 @@ def lay_generators(
         check_memory(n + 1, 1, fabric, memory)
         fibre: list[NDArray[Any]] = [np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3))]
         fibre.append(np.zeros(n, dtype=np.bool_))
-        _, set_nodes, _ = trace(
+        _, ended, _ = trace(
             mesh,
             star.face[half],
             *star.xy[half],
@@ -72,12 +83,19 @@ def lay_generators(
             n,
             *fibre,
         )
-        halves.append([array[:set_nodes] for array in fibre])
-    plus_i, plus_j, minus_i, minus_j = (len(fibre[0]) for fibre in halves)
+        halves.append([array[:ended] for array in fibre])
+    set_nodes = [len(fibre[0]) for fibre in halves]
+    room = set_nodes
+    if reach is not None:
+        wanted = [int(np.ceil(reach[k] / step)) for k, step in zip((1, 3, 0, 2), spacing, strict=True)]
+        room = [min(most, max(got, want)) for most, got, want in zip(counts, set_nodes, wanted, strict=True)]
+    plus_i, plus_j, minus_i, minus_j = room
     shape = (minus_i + plus_i + 1, minus_j + plus_j + 1)
     check_memory(*shape, fabric, memory)
     lattice = empty_lattice(shape)
     i0, j0 = minus_i, minus_j
+    # beyond a generator's end nothing is ever on that generator
+    lattice.status[:, j0] = lattice.status[i0, :] = NodeStatus.OUTSIDE
     lattice.face[i0, j0] = star.face[0]
     lattice.xy[i0, j0] = star.xy[0]
     lattice.status[i0, j0] = NodeStatus.PLACED
@@ -110,11 +128,11 @@ def lay_generators(
         bent_key=np.empty(0, dtype=np.int64),
         bent_ends=np.empty((0, 4)),
     )
-    _keep_seed_edges(lattice, start, (plus_i, plus_j, minus_i, minus_j))
+    _keep_seed_edges(lattice, start, set_nodes)
     return lattice, start
 
 
-def _keep_seed_edges(lattice: Lattice, start: Start, lengths: tuple[int, int, int, int]) -> None:
+def _keep_seed_edges(lattice: Lattice, start: Start, lengths: list[int]) -> None:
     """Keep the four edges at the seed, each in the frame in which its half-fibre starts."""
     i0, j0 = start.origin
     plus_i, plus_j, minus_i, minus_j = lengths

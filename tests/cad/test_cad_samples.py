@@ -66,14 +66,15 @@ def test_step_reads_back_as_what_was_built(sample):
         ("cone", [""]),
     ],
 )
-def test_step_faces_carry_their_names(name, faces):
-    reader = STEPControl_Reader()
-    reader.ReadFile(str(SAMPLES / f"{name}.step"))
-    reader.TransferRoots()
-    transferred = reader.WS().TransferReader()
-    shape = cq.Shape.cast(reader.OneShape())
-    items = [transferred.EntityFromShapeResult(face.wrapped, 1) for face in shape.Faces()]
-    assert [item.Name().ToCString() for item in items] == faces
+def test_step_faces_carry_their_names(name, faces, fresh):
+    for folder in (SAMPLES, fresh):
+        reader = STEPControl_Reader()
+        reader.ReadFile(str(folder / f"{name}.step"))
+        reader.TransferRoots()
+        transferred = reader.WS().TransferReader()
+        shape = cq.Shape.cast(reader.OneShape())
+        items = [transferred.EntityFromShapeResult(face.wrapped, 1) for face in shape.Faces()]
+        assert [item.Name().ToCString() for item in items] == faces
 
 
 @each_sample

@@ -136,6 +136,16 @@ def test_block_is_a_solid_whose_faces_can_be_picked():
         assert on_block.normalAt().toTuple() == pytest.approx(on_shell.normalAt().toTuple(), abs=1e-12)
 
 
+def test_block_may_have_a_fillet():
+    sharp, rounded = (wing_spar.build(**SHORT, block=True, fillet_radius=radius) for radius in (0.0, 20.0))
+    assert rounded.val().ShapeType() == "Solid"
+    assert list(rounded.ctx.tags) == [*sharp.ctx.tags, "fillet"]
+    assert all(tagged.val() in rounded.val().Faces() for tagged in rounded.ctx.tags.values())
+    # A square gives way to a quarter circle, for an edge near 90 degrees.
+    lost = sharp.val().Volume() - rounded.val().Volume()
+    assert lost == pytest.approx((1 - np.pi / 4) * 20**2 * 2010, rel=0.2)
+
+
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
@@ -145,7 +155,7 @@ def test_block_is_a_solid_whose_faces_can_be_picked():
         ({"spar_profile": "naca", "deviation": "none"}, "spar_profile='naca' is not known"),
         ({"spar_profile": "flat"}, "spar_profile='flat' is all of g_s: set deviation to 'none', not 'parabola'"),
         ({"deviation": "wobble"}, "deviation='wobble' is not known: none, linear, parabola"),
-        ({"wing_profile": "arc", "wing_radius": 14000.0}, "must be larger than the span"),
+        ({"wing_profile": "arc", "wing_radius": 14000.0}, "wing_radius=14000.0: must be larger than the span"),
         ({"fillet_radius": 1000.0}, "fillet_radius=1000.0: must be 0"),
         ({"deviation": "ripple", "wavelength": 1.0, "c": 5.0}, "the profiles change too fast"),
     ],

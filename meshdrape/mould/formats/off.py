@@ -9,8 +9,8 @@ import numpy as np
 
 from meshdrape.mould.formats.polygons import Polygons
 
-# NOFF, COFF, STOFF, ...: what comes besides x, y and z follows them; 4OFF and nOFF have other dimensions
-_KEYWORD: Final = re.compile(rb"\s*(?:ST)?C?N?OFF\b(.*)", re.DOTALL)
+# NOFF, COFF, NCOFF, STOFF, ...: what comes besides x, y and z follows them; 4OFF and nOFF have other dimensions
+_KEYWORD: Final = re.compile(rb"\s*(?:ST)?(?:CN?|NC?)?OFF\b(.*)", re.DOTALL)
 
 
 def read_off(content: bytes) -> Polygons:

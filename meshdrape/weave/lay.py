@@ -1,0 +1,168 @@
+"""A sheet laid on one connected mould: collar, generators, quadrants, and room for all of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshdrape.kernels import emit
+from meshdrape.kernels.tables import Lattice, Start
+from meshdrape.surface import Surface, SurfacePoint
+from meshdrape.weave.collar import extended
+from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.generators import (
+    Extent,
+    check_memory,
+    empty_lattice,
+    free_memory,
+    generator_counts,
+    lay_generators,
+)
+from meshdrape.weave.net import run_kernel
+from meshdrape.weave.quadrants import fill
+from meshdrape.weave.start import seed_star
+from meshdrape.weave.status import NodeStatus
+
+# Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
+# find a place on it; two more carry the hem.
+COLLAR_DEPTH = 4.0
+# Cells of cloth kept past the last that touches the mould.
+HEM = 2
+# A net of more nodes than this is first laid coarsely, with about that many nodes, to learn how far it reaches:
+# room for a large lattice is costly to add afterwards.
+SCOUT_FROM, SCOUT_NODES = 150_000, 8_000
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A sheet as it was laid: the extended surface, the lattice on it, and the nodes that libigl had to settle."""
+
+    surface: Surface
+    lattice: Lattice
+    start: Start
+    settled: int
+
+
+def lay(
+    part: Surface,
+    fabric: Fabric,
+    point: SurfacePoint,
+    direction: ArrayLike,
+    extent: Extent | None,
+    threads: int,
+    progress: Callable[[int], None] | None = None,
+) -> Laid:
+    """Lay a sheet from a seed point of a connected surface, without an end where it meets itself, untrimmed.
+
+    Parameters
+    ----------
+    part : Surface
+    point : SurfacePoint
+        The seed, on `part`.
+    direction : (3,)
+        Of the warp.
+    extent : (warp-, warp+, weft-, weft+), mm, optional
+
+    Raises
+    ------
+    NetError
+        If the net would not fit in the memory.
+    """
+    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    surface = extended(part, COLLAR_DEPTH * longest)
+    star = seed_star(surface, point, direction, fabric.initial_angle)
+    counts = generator_counts(part, fabric, extent)
+    memory = free_memory()
+    cells = float(part.face_area.sum()) / (fabric.warp_spacing * fabric.weft_spacing)
+    reach = None
+    if cells > SCOUT_FROM:
+        check_memory(int(cells), 1, fabric, memory)
+        scale = float(np.sqrt(cells / SCOUT_NODES))
+        coarse = Fabric((scale * fabric.warp_spacing, scale * fabric.weft_spacing), fabric.initial_angle)
+        reach = _reach(lay(part, coarse, point, direction, extent, threads), coarse)
+    lattice, start = lay_generators(surface, fabric, star, counts, memory, reach)
+    settled = 0
+    while True:
+        start, more = fill(surface, fabric, lattice, start, threads, progress)
+        settled += more
+        grow = _room_wanted(lattice, start, counts)
+        if not any(grow):
+            return Laid(surface, lattice, start, settled)
+        lattice, start = _grown(lattice, start, grow, fabric, memory)
+
+
+def _reach(laid: Laid, fabric: Fabric) -> Extent:
+    """How far the nodes on the mould reach from the seed (warp-, warp+, weft-, weft+), mm, and two cells more."""
+    i, j = np.nonzero(laid.lattice.status == NodeStatus.PLACED)
+    i0, j0 = (int(v) for v in laid.start.origin)
+    return (
+        (i0 - int(i.min()) + 2) * fabric.warp_spacing,
+        (int(i.max()) - i0 + 2) * fabric.warp_spacing,
+        (j0 - int(j.min()) + 2) * fabric.weft_spacing,
+        (int(j.max()) - j0 + 2) * fabric.weft_spacing,
+    )
+
+
+def _room_wanted(lattice: Lattice, start: Start, counts: list[int]) -> tuple[int, int, int, int]:
+    """Rows to add before and after, columns before and after: where a side has nodes on the mould, a quarter more."""
+    status = lattice.status
+    n_warp, n_weft = status.shape
+    i0, j0 = (int(v) for v in start.origin)
+    have = (i0, n_warp - 1 - i0, j0, n_weft - 1 - j0)
+    most = (counts[2], counts[0], counts[3], counts[1])
+    sides = (status[0], status[-1], status[:, 0], status[:, -1])
+    length = (n_warp, n_warp, n_weft, n_weft)
+    before_i, after_i, before_j, after_j = (
+        min(max(8, n // 4), limit - got) if (side == NodeStatus.PLACED).any() else 0
+        for side, n, limit, got in zip(sides, length, most, have, strict=True)
+    )
+    return before_i, after_i, before_j, after_j
+
+
+def _grown(
+    lattice: Lattice, start: Start, grow: tuple[int, int, int, int], fabric: Fabric, memory: int
+) -> tuple[Lattice, Start]:
+    before_i, after_i, before_j, after_j = grow
+    n_warp, n_weft = lattice.status.shape
+    shape = (n_warp + before_i + after_i, n_weft + before_j + after_j)
+    check_memory(*shape, fabric, memory)
+    larger = empty_lattice(shape)
+    window = (slice(before_i, before_i + n_warp), slice(before_j, before_j + n_weft))
+    larger.face[window], larger.status[window] = lattice.face, lattice.status
+    larger.xy[window], larger.warp_out[window], larger.weft_out[window] = lattice.xy, lattice.warp_out, lattice.weft_out
+    i0, j0 = start.origin[0] + before_i, start.origin[1] + before_j
+    # nothing beyond a generator's end is ever on that generator
+    larger.status[:, j0][np.r_[0:before_i, before_i + n_warp : shape[0]]] = NodeStatus.OUTSIDE
+    larger.status[i0, :][np.r_[0:before_j, before_j + n_weft : shape[1]]] = NodeStatus.OUTSIDE
+    # bent edges are known by their place in the lattice
+    cell, family = start.bent_key // 2, start.bent_key % 2
+    i, j = cell // n_weft + before_i, cell % n_weft + before_j
+    moved = start._replace(origin=np.array([i0, j0]), bent_key=2 * (i * shape[1] + j) + family)
+    return larger, moved
+
+
+def trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, threads: int) -> None:
+    """Take back the nodes on the extension farther than the hem from a cell that touches the mould."""
+    n_warp, n_weft = lattice.status.shape
+    touching = np.empty((max(n_warp - 1, 0), max(n_weft - 1, 0)), dtype=np.bool_)
+    rows = max(1, -(-(n_warp - 1) // (4 * threads)))
+    run_kernel(
+        emit.touching_cells,
+        [
+            (
+                surface.unfolding,
+                lattice,
+                start,
+                a,
+                fabric.warp_spacing,
+                fabric.weft_spacing,
+                touching[a : a + rows],
+            )
+            for a in range(0, n_warp - 1, rows)
+        ],
+        threads,
+    )
+    emit.trim(lattice, touching, HEM)
