@@ -18,7 +18,17 @@ class MouldError(MeshdrapeError):
 
 
 class SelectionError(MeshdrapeError):
-    """Faces of a B-rep asked for that are not there, or no choice made where one is needed."""
+    """Faces of a B-rep asked for that are not there, or no choice made where one is needed.
+
+    Attributes
+    ----------
+    faces : tuple
+        The faces there are (:class:`meshdrape.mould.CadFace`).
+    """
+
+    def __init__(self, message: str, faces: tuple[object, ...] = ()) -> None:
+        super().__init__(message)
+        self.faces = faces
 
 
 class FabricError(MeshdrapeError):

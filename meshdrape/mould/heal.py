@@ -181,12 +181,13 @@ class _Bench:
         return np.asarray(relative_height(self.vertices, self.triangles) <= 1 / NEEDLE)
 
     def _fins(self) -> NDArray[np.bool_]:
-        """Whether each triangle hangs on an edge of more than two triangles and on nothing else."""
-        _, edge, count = np.unique(
-            edge_keys(self.triangles, len(self.vertices)), return_inverse=True, return_counts=True
-        )
-        triangles_on = count[edge].reshape(-1, 3)
-        return np.asarray(((triangles_on == 1).sum(axis=1) == 2) & (triangles_on > 2).any(axis=1))
+        """Whether each triangle hangs on nothing but an edge that two others lie on that do not so hang."""
+        keys = edge_keys(self.triangles, len(self.vertices))
+        _, edge, count = np.unique(keys, return_inverse=True, return_counts=True)
+        edge = edge.reshape(-1, 3)
+        hangs = ((count[edge] == 1).sum(axis=1) == 2) & (count[edge] > 2).any(axis=1)
+        sheet = np.bincount(edge[~hangs].ravel(), minlength=len(count))
+        return np.asarray(hangs & (sheet[edge] == 2).any(axis=1))
 
     def _keep(self, wanted: NDArray[np.bool_]) -> None:
         self.triangles_removed += int(np.count_nonzero(~wanted))
@@ -225,9 +226,7 @@ def _found_in(corners: Floats, others: Floats) -> NDArray[np.bool_]:
 def _probes(corners: Floats) -> Floats:
     """Points evenly spread over triangles (m, 3, 3), corners and edges among them."""
     steps = np.arange(PROBES)
-    weights = np.array([(a, b, PROBES - 1 - a - b) for a in steps for b in steps[: PROBES - a]]) / (
-        PROBES - 1
-    )
+    weights = np.array([(a, b, PROBES - 1 - a - b) for a in steps for b in steps[: PROBES - a]]) / (PROBES - 1)
     return np.asarray(np.einsum("pk,mkd->mpd", weights, corners).reshape(-1, 3))
 
 

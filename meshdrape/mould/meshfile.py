@@ -144,9 +144,7 @@ def read_mesh_mould(path: str | os.PathLike[str], unit: str | None = None, heal:
     except MouldError as error:
         msg = f"{path}: {error}"
         raise MouldError(msg) from error
-    return replace(
-        mould, source=Path(path), sha256=file_sha256(path), notes=mesh.notes + mould.notes, healing=healing
-    )
+    return replace(mould, source=Path(path), sha256=file_sha256(path), notes=mesh.notes + mould.notes, healing=healing)
 
 
 def _polygons(file: Path, read: Callable[[bytes], Polygons]) -> Polygons:
@@ -156,7 +154,7 @@ def _polygons(file: Path, read: Callable[[bytes], Polygons]) -> Polygons:
     except OSError as error:
         msg = f"{file} cannot be read: {error.strerror}"
         raise FileError(msg) from error
-    except (ValueError, KeyError, OverflowError) as error:
+    except (ValueError, OverflowError) as error:
         reason = " ".join(str(error).split())
         msg = f"{file} is not a whole {kind} file ({reason}); export it anew"
         raise FileError(msg) from error

@@ -20,11 +20,7 @@ def welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     points = vertices + 0.0  # minus zero is zero
     order = np.lexsort(points.T)
     ordered = points[order]
-    new = (
-        np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
-        if len(order)
-        else np.empty(0, bool)
-    )
+    new = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)]) if len(order) else np.empty(0, bool)
     first = np.empty(len(points), dtype=np.int64)
     first[order] = order[new][np.cumsum(new) - 1]
     return _merged(points, triangles, first)

@@ -4,12 +4,12 @@ import time
 
 import numpy as np
 import pytest
+from moulds import Mesh, cut_plate, grid, holed_plate, plate, rotation
 
 from meshdrape.errors import MouldError
 from meshdrape.mould.check import FaultKind, as_arrays, examine, notes_on
 from meshdrape.mould.mould import Mould
 from meshdrape.surface import Surface
-from moulds import Mesh, cut_plate, grid, holed_plate, plate, rotation
 
 WAY_OUT = "repair it with --heal, or in CAD"
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from moulds import holed_plate, plate
 
 import meshdrape
 from meshdrape.errors import MeshdrapeError, MouldError
 from meshdrape.mould import CadFace, Mould
 from meshdrape.mould.units import MILLIMETRES, millimetres
-from moulds import holed_plate, plate
 
 SQUARE = [[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0]]
 TWO = [[0, 1, 2], [0, 2, 3]]

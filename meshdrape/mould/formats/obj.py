@@ -12,10 +12,8 @@ def read_obj(content: bytes) -> Polygons:
     vertices: list[list[float]] = []
     corner: list[int] = []
     size: list[int] = []
-    for number, line in enumerate(
-        content.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines(), start=1
-    ):
-        words = line.split()
+    for number, line in enumerate(content.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines(), start=1):
+        words = line.partition(b"#")[0].split()
         try:
             if words[:1] == [b"v"]:
                 x, y, z = words[1:4]

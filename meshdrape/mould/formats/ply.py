@@ -67,11 +67,20 @@ def read_ply(content: bytes) -> Polygons:
             if not found or not isinstance(found[0], tuple):
                 msg = "its faces have no list vertex_indices"
                 raise ValueError(msg)
-            faces = found[0][0].astype(np.int64), found[0][1].astype(np.int64)
+            faces = _whole(found[0][0]), _whole(found[0][1])
     if vertices is None or faces is None:
         msg = "it has no faces: a point cloud is no mould" if faces is None else "it has no vertices"
         raise ValueError(msg)
     return Polygons(vertices, *faces)
+
+
+def _whole(numbers: NDArray[Any]) -> Ints:
+    """Return numbers that must be whole as integers."""
+    # beyond 2^53 a float64 is whole but may be another number than was written
+    if not ((np.floor(numbers) == numbers) & (np.abs(numbers) < 2.0**53)).all():
+        msg = "a face uses a vertex whose number is not whole"
+        raise ValueError(msg)
+    return numbers.astype(np.int64)
 
 
 def _header(content: bytes) -> tuple[str, list[_Element], bytes]:
@@ -107,9 +116,7 @@ def _header(content: bytes) -> tuple[str, list[_Element], bytes]:
 
 
 def _truncated(element: _Element) -> ValueError:
-    return ValueError(
-        f"truncated: its header says {element.count:,} of element {element.name}, there are fewer"
-    )
+    return ValueError(f"truncated: its header says {element.count:,} of element {element.name}, there are fewer")
 
 
 def _from_text(elements: list[_Element], words: list[bytes]) -> Iterator[tuple[_Element, _Columns]]:
@@ -212,14 +219,10 @@ class _Rows:
     """Columns that grow row by row."""
 
     def __init__(self, element: _Element) -> None:
-        self.columns: list[tuple[_Property, list[float], list[int]]] = [
-            (p, [], []) for p in element.properties
-        ]
+        self.columns: list[tuple[_Property, list[float], list[int]]] = [(p, [], []) for p in element.properties]
 
     def arrays(self) -> _Columns:
         return {
-            p.name: (np.array(values), np.array(lengths, dtype=np.int64))
-            if p.count_code
-            else np.array(values)
+            p.name: (np.array(values), np.array(lengths, dtype=np.int64)) if p.count_code else np.array(values)
             for p, values, lengths in self.columns
         }

@@ -50,9 +50,7 @@ class Polygons:
             pieces.append(_halves(self.vertices, self.corner[first[fours, None] + np.arange(4)]))
             owners.append(np.repeat(fours, 2))
         for polygon in more.tolist():
-            pieces.append(
-                _ears(self.vertices, self.corner[first[polygon] : first[polygon] + self.size[polygon]])
-            )
+            pieces.append(_ears(self.vertices, self.corner[first[polygon] : first[polygon] + self.size[polygon]]))
             owners.append(np.full(len(pieces[-1]), polygon))
         order = np.argsort(np.concatenate(owners), kind="stable")
         return np.asarray(np.concatenate(pieces)[order])
@@ -85,11 +83,7 @@ def _ears(vertices: Floats, polygon: Ints) -> Ints:
     across = np.cross(normal / size, np.eye(3)[np.argmin(np.abs(normal))])
     across /= np.linalg.norm(across)
     flat = np.stack([points @ across, points @ np.cross(normal / size, across)], axis=1)
-    ears = (
-        mapbox_earcut.triangulate_float64(flat, np.array([k], dtype=np.uint32))
-        .reshape(-1, 3)
-        .astype(np.int64)
-    )
+    ears = mapbox_earcut.triangulate_float64(flat, np.array([k], dtype=np.uint32)).reshape(-1, 3).astype(np.int64)
     if len(ears) != k - 2:
         return polygon[fan]
     u, v = flat[ears[:, 1]] - flat[ears[:, 0]], flat[ears[:, 2]] - flat[ears[:, 0]]

@@ -44,7 +44,7 @@ def _text(content: bytes) -> Polygons:
     found = _VERTEX.findall(content)
     facets = len(_END_OF_FACET.findall(content))
     if len(found) != 3 * facets or not re.search(rb"\bendsolid\b[^\n]*\s*\Z", content, re.IGNORECASE):
-        msg = f"truncated or damaged: {len(found):,} vertices in {facets:,} whole facets"
+        msg = f"truncated or damaged: whole facets {facets:,}, vertices {len(found):,}"
         raise ValueError(msg)
     return _of_corners(np.array([[float(x) for x in row] for row in found], dtype=np.float64).reshape(-1, 3))
 

@@ -1,0 +1,94 @@
+"""A CadQuery script run through CadQuery's own gateway (CQGI), its parameters set by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from meshdrape.errors import FileError
+from meshdrape.mould.shape import NamedShape, cadquery_module, of_shape
+
+
+def run_script(path: Path, parameters: Mapping[str, Any] | None = None) -> NamedShape:
+    """The shape that a CadQuery script shows, mm.
+
+    Parameters
+    ----------
+    parameters : mapping, optional
+        Values, or the words for them, by the names of the script's plain assignments.
+
+    Raises
+    ------
+    FileError
+        If the script cannot be parsed, raises, shows nothing, or has no parameter of a given name.
+    """
+    cq = cadquery_module()
+    from cadquery import cqgi
+
+    try:
+        model = cqgi.parse(path.read_text(encoding="utf-8"))
+    except (SyntaxError, UnicodeDecodeError, ValueError) as error:
+        line = f", line {error.lineno}" if isinstance(error, SyntaxError) else ""
+        msg = f"{path}{line} is not a Python script: {_one_line(error)}"
+        raise FileError(msg) from error
+    known = model.metadata.parameters
+    values = {}
+    for name, word in (parameters or {}).items():
+        if name not in known:
+            listed = ", ".join(f"{key}={parameter.default_value}" for key, parameter in known.items()) or "none"
+            msg = f"{path} has no parameter {name!r}; it has {listed}"
+            raise FileError(msg)
+        values[name] = _value(path, name, word, known[name])
+    result = model.build(build_parameters=values)
+    if not result.success:
+        msg = f"{path}{_line_of(result.exception)} failed: {type(result.exception).__name__}: {_one_line(result.exception)}"
+        raise FileError(msg)
+    shapes = [shape for shown in result.results for shape in _shapes(cq, shown.shape)]
+    if not shapes:
+        msg = f"{path} shows no shape; end it with show_object(shape)"
+        raise FileError(msg)
+    return of_shape(shapes[0] if len(shapes) == 1 else cq.Compound.makeCompound(shapes), path)
+
+
+def _value(path: Path, name: str, word: Any, parameter: Any) -> Any:
+    """A word from the command line as a value of the parameter's own type."""
+    from cadquery import cqgi
+
+    if not isinstance(word, str) or parameter.varType is cqgi.StringParameterType:
+        return word
+    if parameter.varType is cqgi.BooleanParameterType:
+        truth = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}.get(word.lower())
+        if truth is None:
+            msg = f"{path}: {name}={word} is not true or false"
+            raise FileError(msg)
+        return truth
+    try:
+        number = float(word)
+    except ValueError:
+        msg = f"{path}: {name}={word} is not a number; its default is {parameter.default_value}"
+        raise FileError(msg) from None
+    return int(number) if isinstance(parameter.default_value, int) and number.is_integer() else number
+
+
+def _shapes(cq: Any, shown: Any) -> list[Any]:
+    if isinstance(shown, cq.Workplane):
+        return [value for value in shown.vals() if isinstance(value, cq.Shape)]
+    if isinstance(shown, cq.Assembly):
+        return [shown.toCompound()]
+    return [shown] if isinstance(shown, cq.Shape) else []
+
+
+def _line_of(error: BaseException | None) -> str:
+    """Where in the script an exception arose."""
+    trace = error.__traceback__ if error is not None else None
+    line = None
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == "<cqscript>":
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    return f", line {line}," if line else ""
+
+
+def _one_line(error: object) -> str:
+    return " ".join(str(error).split()) or "no reason given"
