@@ -52,31 +52,35 @@ def degrees(text: str) -> float:
     return math.radians(value)
 
 
-def add_mould_options(parser: argparse.ArgumentParser) -> None:
-    """The mould and how it is read."""
+def add_reading_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
+    """The mould's file and how it is read."""
     parser.add_argument("mould", metavar="MOULD", help="STEP, BREP, STL, OBJ, PLY or OFF file, or a CadQuery script")
     group = parser.add_argument_group("the mould")
-    group.add_argument("--faces", help='CAD faces to drape: a CadQuery selector (">Z") or ids ("1,3"; see inspect)')
     group.add_argument("--unit", help="unit of a mesh file: mm (default), cm, m, um, in, ft")
-    group.add_argument("--chord-tolerance", type=float, metavar="MM", help="largest gap between facets and CAD face")
-    group.add_argument("--angle-tolerance", type=degrees, metavar="DEG", help="largest angle between facets")
-    group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
+    group.add_argument("--chord-tolerance", type=float, metavar="MM", help="largest gap from facets to CAD face (0.1)")
     group.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="parameter of a CadQuery script; repeatable",
+        "--angle-tolerance",
+        type=degrees,
+        metavar="DEG",
+        help="largest angle between facets (0.2); wider, for the same error of shear, on doubly curved faces",
     )
+    group.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter of a CadQuery script; repeatable"
+    )
+    return group
 
 
-def read_mould(options: argparse.Namespace) -> Mould:
-    """The mould that the options name."""
-    from meshdrape.mould import read_mould as read
+def add_mould_options(parser: argparse.ArgumentParser) -> None:
+    """The mould's file, how it is read, and what of it is draped."""
+    group = add_reading_options(parser)
+    group.add_argument(
+        "--faces", help='CAD faces to drape: a CadQuery selector (">Z"), ids ("1,3"; see inspect) or names'
+    )
+    group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
 
-    tolerances = {
-        name: value for name in ("chord_tolerance", "angle_tolerance") if (value := getattr(options, name)) is not None
-    }
+
+def reading(options: argparse.Namespace) -> dict[str, Any]:
+    """What the reading options say, as arguments of `read_mould` and `inspect_mould`."""
     parameters = {}
     for word in options.set:
         name, equals, value = word.partition("=")
@@ -84,11 +88,12 @@ def read_mould(options: argparse.Namespace) -> Mould:
             msg = f"--set {word}: give NAME=VALUE, such as --set span=14000"
             raise FileError(msg)
         parameters[name] = value
-    return read(
-        options.mould,
-        faces=options.faces,
-        unit=options.unit,
-        heal=options.heal,
-        parameters=parameters or None,
-        **tolerances,
-    )
+    said = {name: getattr(options, name) for name in ("unit", "chord_tolerance", "angle_tolerance")}
+    return {"parameters": parameters or None, **{name: value for name, value in said.items() if value is not None}}
+
+
+def read_mould(options: argparse.Namespace) -> Mould:
+    """The mould that the options name."""
+    from meshdrape.mould import read_mould as read
+
+    return read(options.mould, faces=options.faces, heal=options.heal, **reading(options))

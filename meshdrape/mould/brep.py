@@ -11,25 +11,21 @@ import numpy as np
 
 from meshdrape.errors import MouldError, SelectionError
 from meshdrape.mould.mould import CadFace, Mould
-from meshdrape.mould.outline import Tolerances
+from meshdrape.mould.patch import Patch, Tolerances
 from meshdrape.mould.shape import NamedShape
-from meshdrape.mould.tessellate import is_developable, tessellate
+from meshdrape.mould.tessellate import tessellate
 
 # A facetted crease errs in direction by half the turn of a facet, and the net's shear by as much: this keeps it a
 # thirtieth of a locking angle of 7 degrees.
 ANGLE_TOLERANCE = math.radians(0.2)
 CHORD_TOLERANCE = 0.1
-# On a doubly curved face the noise is the curvature one vertex carries, about the square of the angle between
-# neighbouring facets: there the angle may be ten times wider for a smaller error.
-GAUSS_ANGLE_FACTOR, GAUSS_ANGLE_MOST = 10.0, math.radians(15.0)
 
 
 def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
     """Every face of a shape, ids from 1 in the order of the file."""
     from OCP.TopTools import TopTools_IndexedMapOfShape
 
-    from meshdrape.mould.patch import Patch
-
+    anywhere = Tolerances(CHORD_TOLERANCE, ANGLE_TOLERANCE)
     edges = TopTools_IndexedMapOfShape()
     touching: dict[int, list[int]] = {}
     for number, face in enumerate(shape.faces, start=1):
@@ -51,7 +47,7 @@ def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
                 normal=np.array(face.normalAt(centre).toTuple()),
                 centre=np.array(centre.toTuple()),
                 neighbours=tuple(sorted(neighbours[number])),
-                developable=is_developable(Patch(face.wrapped, 0)),
+                developable=Patch(face.wrapped, 0, anywhere).developable,
             )
         )
     return tuple(listed)
@@ -77,8 +73,8 @@ def brep_mould(
     chord_tolerance : float, mm
         Largest distance of a facet from its face.
     angle_tolerance : float, rad
-        Largest angle between facets at a crease or across a developable face; ten times as much between the facets of
-        a doubly curved face.
+        Largest angle between facets at a crease or across a developable face; on a doubly curved face that which
+        makes the same error of shear (:class:`~meshdrape.mould.patch.Tolerances`).
 
     Raises
     ------
@@ -98,15 +94,13 @@ def brep_mould(
     listed = cad_faces(shape)
     chosen = select(shape, listed, faces, origin)
     picked, notes = _sewn([shape.faces[number - 1] for number in chosen])
-    tolerances = Tolerances(chord, angle, min(GAUSS_ANGLE_FACTOR * angle, GAUSS_ANGLE_MOST))
-    mesh = tessellate([face.wrapped for face in picked], tolerances)
-    turned = np.array([face.wrapped.Orientation().name == "TopAbs_REVERSED" for face in picked])
-    triangles = np.where(turned[mesh.triangle_face][:, None], mesh.triangles[:, ::-1], mesh.triangles)
-    mould = Mould.from_arrays(mesh.vertices, triangles)
+    named = [f"face {number} of {origin}" for number in chosen]
+    mesh = tessellate([face.wrapped for face in picked], Tolerances(chord, angle), named)
+    mould = Mould.from_arrays(mesh.vertices, mesh.triangles)
     ids = np.array(chosen)[mesh.triangle_face]
     return replace(
         mould,
-        triangle_face=ids,
+        triangle_face=mesh.triangle_face,
         cad_faces=tuple(listed[number - 1] for number in chosen),
         chord_tolerance=chord,
         angle_tolerance=angle,
@@ -206,5 +200,10 @@ def _sewn(faces: list[Any]) -> tuple[list[Any], tuple[str, ...]]:
     ordered = []
     for face in faces:
         modified = sewing.ModifiedSubShape(face.wrapped)
-        ordered.append(next((f for f in shell.Faces() if f.wrapped.IsSame(modified)), cadquery.Face(TopoDS.Face_s(modified))))
+        ordered.append(
+            next(
+                (f for f in shell.Faces() if f.wrapped.IsSame(modified)),
+                cadquery.Face(TopoDS.Face_s(modified)),
+            )
+        )
     return ordered, (f"{len(faces)} loose faces sewn along {sewing.NbContigousEdges()} edges",)

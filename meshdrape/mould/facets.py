@@ -1,7 +1,6 @@
-"""Triangles of CAD faces in their own parameters: diagonals turned and edges split until they follow the face.
+"""Triangles of CAD faces in their own parameters, whose diagonals can be turned and whose edges can be split.
 
-Works on plain arrays; how a CAD face looks comes in through a function that evaluates it. The measure
-throughout is the face's own metric
+The measure throughout is a metric of the faces,
 
     M = I / length^2 + III / angle^2,
 
@@ -15,196 +14,156 @@ another, however long and thin the face.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshdrape.mould.patch import Nodes
+from meshdrape.mould.patch import Bools, Floats, Ints, Nodes
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-FLIP_GAIN = 1e-6  # rad of opposite angle a flip must gain, so that round-off cannot turn it to and fro
-THINNEST = (
-    1e-6  # smallest share a triangle may have of its quadrilateral in (u, v): less is a collinear corner
-)
-MAX_ROUNDS = 100_000
-
-
-Evaluate = Callable[[Ints, Floats], Nodes]
+# rad of opposite angles that a flip must gain, so that round-off cannot turn a diagonal to and fro.
+FLIP_GAIN: Final = 1e-6
+# Smallest share a triangle may have of its quadrilateral in (u, v): less is three nodes in line.
+THINNEST: Final = 1e-6
+# A fan over a straight side is turned over one diagonal a round.
+MOST_ROUNDS: Final = 20_000
 
 
 class Facets:
-    """A triangulation that can turn its diagonals and split its edges.
+    """A triangulation of one or more CAD faces, each a component of its own.
 
-    Half-edge ``3 t + k`` runs from corner k to corner k + 1 of triangle t, counter-clockwise in (u, v);
-    ``twin`` is the half-edge on its other side, -1 on the outline of a face.
+    Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t, counter-clockwise in (u, v).
+
+    Attributes
+    ----------
+    nodes : Nodes
+    triangles : (t, 3) int64
+    twin : (3 t,) int64
+        The half-edge on the other side of each, -1 on the outline.
     """
 
     def __init__(self, nodes: Nodes, triangles: Ints) -> None:
         self.nodes = nodes
-        self.triangles = np.array(triangles, dtype=np.int64)
-        self.twin = _twins(self.triangles, len(nodes.uv))
+        self.triangles = triangles.copy()
+        self.twin = _twins(triangles, len(nodes))
+        self._random = np.random.default_rng(0)
 
-    def flip_to_delaunay(self, touched: Ints | None = None) -> None:
-        """Turn diagonals until every inner edge is Delaunay in the metric, as far as (u, v) allows.
-
-        A round turns diagonals no two of which share a triangle, the most profitable first.
-        """
-        if touched is None:
-            touched = np.arange(len(self.triangles))
-        rng = np.random.default_rng(0)
-        for _ in range(MAX_ROUNDS):
-            edge = self._inner_edges(touched)
-            a, b, c, d = self._quad(edge)
-            gain = self._gain(a, b, c, d)
-            wanted = (gain > FLIP_GAIN) & self._convex(a, b, c, d)
-            edge, gain = edge[wanted], gain[wanted]
-            edge = edge[self._independent(edge, rng.random(len(edge)))]
-            if not len(edge):
-                return
-            touched = self._flip(edge)
-
-    def split_long_edges(
-        self, limit: Callable[[Facets, Ints], Floats], evaluate: Evaluate, most: int
-    ) -> None:
-        rng = np.random.default_rng(0)
-        for _ in range(MAX_ROUNDS):
-            edge = self._inner_edges(np.arange(len(self.triangles)))
-            size = limit(self, edge)
-            wanted = size > 1
-            edge, size = edge[wanted], size[wanted]
-            # classes of a quarter, in random order within one: else a smooth size field lets only its peaks split
-            rank = np.floor(np.log(size) / np.log(1.25)) + rng.random(len(size))
-            edge = edge[self._independent(edge, rank)]
-            if not len(edge):
-                return
-            a, b, _, _ = self._quad(edge)
-            self.flip_to_delaunay(
-                self._split(edge, evaluate(self.nodes.face[a], (self.nodes.uv[a] + self.nodes.uv[b]) / 2))
-            )
-
-    def _inner_edges(self, triangles: Ints) -> Ints:
-        """One half-edge, the lower, of every inner edge of the triangles."""
+    def inner_edges(self, triangles: Ints | None = None) -> Ints:
+        """Return one half-edge of each edge between two triangles; only of the given triangles, if any."""
+        if triangles is None:
+            half = np.arange(len(self.twin))
+            return half[half < self.twin]
         half = (3 * triangles[:, None] + np.arange(3)).ravel()
         twin = self.twin[half]
         return np.unique(np.minimum(half, twin)[twin >= 0])
 
-    def _quad(self, edge: Ints) -> tuple[Ints, Ints, Ints, Ints]:
-        """Ends a, b of the edges, the corner c on their left and d on their right."""
-        corner = self.triangles.ravel()
-        twin = self.twin[edge]
-        return corner[edge], corner[_next(edge)], corner[_next(_next(edge))], corner[_next(_next(twin))]
+    def quads(self, edge: Ints) -> tuple[Ints, Ints, Ints, Ints]:
+        """Return the ends a, b of inner edges, the corner c on their left and d on their right."""
+        corner, twin = self.triangles.ravel(), self.twin[edge]
+        return corner[edge], corner[_next(edge)], corner[_previous(edge)], corner[_previous(twin)]
 
-    def _gain(self, a: Ints, b: Ints, c: Ints, d: Ints) -> Floats:
-        """Sum of the angles over the edge a-b less the sum over c-d, in the mean metric of the four, rad."""
-        uv, metric = self.nodes.uv, self.nodes.metric
-        m = metric[a] + metric[b] + metric[c] + metric[d]
-        ca, cb, da, db = uv[a] - uv[c], uv[b] - uv[c], uv[a] - uv[d], uv[b] - uv[d]
-        root = np.sqrt(np.maximum(m[:, 0] * m[:, 2] - m[:, 1] ** 2, 0.0))
-        return (
-            _angle(m, root, ca, cb)
-            + _angle(m, root, db, da)
-            - _angle(m, root, -da, -ca)
-            - _angle(m, root, -cb, -db)
-        )
-
-    def _convex(self, a: Ints, b: Ints, c: Ints, d: Ints) -> NDArray[np.bool_]:
-        uv = self.nodes.uv
-        one, two = _cross(uv[d] - uv[a], uv[c] - uv[a]), _cross(uv[c] - uv[b], uv[d] - uv[b])
-        return np.minimum(one, two) > THINNEST * (one + two)
-
-    def _independent(self, edge: Ints, value: Floats) -> NDArray[np.bool_]:
-        """Edges that hold the highest value of both their triangles: no two of them share a triangle."""
+    def apart(self, edge: Ints, priority: Floats) -> Bools:
+        """Whether an edge comes first in both its triangles: no two such edges share a triangle."""
         rank = np.empty(len(edge), dtype=np.int64)
-        rank[np.argsort(value, kind="stable")] = np.arange(len(edge))
+        rank[np.argsort(priority, kind="stable")] = np.arange(len(edge))
         left, right = edge // 3, self.twin[edge] // 3
         best = np.full(len(self.triangles), -1, dtype=np.int64)
         np.maximum.at(best, left, rank)
         np.maximum.at(best, right, rank)
-        return (best[left] == rank) & (best[right] == rank)
+        return np.asarray((best[left] == rank) & (best[right] == rank))
 
-    def _flip(self, edge: Ints) -> Ints:
-        """Turn the diagonals a-b into c-d; returns the triangles touched."""
-        a, b, c, d = self._quad(edge)
-        twin = self.twin[edge]
-        left, right = edge // 3, twin // 3
-        outer = np.concatenate(
-            [_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))]
-        )  # bc, ca, ad, db
-        moved = np.concatenate([3 * right + 1, 3 * left + 2, 3 * left, 3 * right])
-        # left becomes a, d, c and right becomes b, c, d
-        moved = np.concatenate([3 * right, 3 * left + 2, 3 * left, 3 * right + 2])
-        self.triangles[left] = np.column_stack([a, d, c])
-        self.triangles[right] = np.column_stack([b, c, d])
-        self._rejoin(outer, moved)
-        self.twin[3 * left + 1], self.twin[3 * right + 1] = 3 * right + 1, 3 * left + 1
-        return np.concatenate([left, right])
+    def make_delaunay(self, touched: Ints | None = None) -> None:
+        """Turn diagonals until all edges of the touched triangles are Delaunay, as far as (u, v) allows."""
+        for _ in range(MOST_ROUNDS):
+            edge = self.inner_edges(touched)
+            edge = edge[self._gains(edge)]
+            edge = edge[self.apart(edge, self._random.random(len(edge)))]
+            if not len(edge):
+                return
+            touched = self._flip(edge)
 
-    def _split(self, edge: Ints, middle: Nodes) -> Ints:
-        """Put a node on the edges a-b; returns the triangles touched."""
-        a, b, c, d = self._quad(edge)
-        twin = self.twin[edge]
+    def split(self, edge: Ints, middle: Nodes) -> Ints:
+        """Put the given nodes on edges that are apart; returns the triangles touched."""
+        a, b, c, d = self.quads(edge)
+        twin, n = self.twin[edge], len(edge)
+        m = len(self.nodes) + np.arange(n)
         left, right = edge // 3, twin // 3
-        m = len(self.nodes.uv) + np.arange(len(edge))
-        first = len(self.triangles)
-        left_b, right_b = first + np.arange(len(edge)), first + len(edge) + np.arange(len(edge))
-        outer = np.concatenate(
-            [_next(edge), _next(_next(edge)), _next(twin), _next(_next(twin))]
-        )  # bc, ca, ad, db
-        # left = a m c, left_b = m b c, right = m a d, right_b = b m d
-        moved = np.concatenate([3 * left_b + 1, 3 * left + 2, 3 * right + 1, 3 * right_b + 2])
+        left_b = len(self.triangles) + np.arange(n)
+        right_b = left_b + n
         self.nodes = Nodes.joined([self.nodes, middle])
-        self.triangles[left] = np.column_stack([a, m, c])
-        self.triangles[right] = np.column_stack([m, a, d])
+        self.triangles[left], self.triangles[right] = np.column_stack([a, m, c]), np.column_stack([m, a, d])
         self.triangles = np.vstack([self.triangles, np.column_stack([m, b, c]), np.column_stack([b, m, d])])
-        self.twin = np.concatenate([self.twin, np.full(6 * len(edge), -1, dtype=np.int64)])
-        self._rejoin(outer, moved)
-        for one, two in (
-            (3 * left, 3 * right),
-            (3 * left_b, 3 * right_b),
-            (3 * left + 1, 3 * left_b + 2),
-            (3 * right + 2, 3 * right_b + 1),
-        ):
-            self.twin[one], self.twin[two] = two, one
+        self.twin = np.concatenate([self.twin, np.full(6 * n, -1, dtype=np.int64)])
+        self._rename(
+            [_next(edge), _previous(edge), _next(twin), _previous(twin)],  # b-c, c-a, a-d, d-b
+            [3 * left_b + 1, 3 * left + 2, 3 * right + 1, 3 * right_b + 2],
+        )
+        self._pair(3 * left, 3 * right)
+        self._pair(3 * left_b, 3 * right_b)
+        self._pair(3 * left + 1, 3 * left_b + 2)
+        self._pair(3 * right + 2, 3 * right_b + 1)
         return np.concatenate([left, right, left_b, right_b])
 
-    def _rejoin(self, old: Ints, new: Ints) -> None:
-        """Half-edges ``old`` are now called ``new``: carry their twins over, which may be moving themselves."""
-        name = np.arange(len(self.twin))
-        name[old] = new
-        partner = self.twin[old]
-        inner = partner >= 0
-        self.twin[new[~inner]] = -1
-        new, partner = new[inner], name[partner[inner]]
-        self.twin[new] = partner
-        self.twin[partner] = new
+    def _flip(self, edge: Ints) -> Ints:
+        """Turn the diagonals a-b, which are apart, into c-d; returns the triangles touched."""
+        a, b, c, d = self.quads(edge)
+        twin = self.twin[edge]
+        left, right = edge // 3, twin // 3
+        self.triangles[left], self.triangles[right] = np.column_stack([a, d, c]), np.column_stack([b, c, d])
+        self._rename(
+            [_next(edge), _previous(edge), _next(twin), _previous(twin)],  # b-c, c-a, a-d, d-b
+            [3 * right, 3 * left + 2, 3 * left, 3 * right + 2],
+        )
+        self._pair(3 * left + 1, 3 * right + 1)
+        return np.concatenate([left, right])
+
+    def _gains(self, edge: Ints) -> Bools:
+        """Whether a diagonal is better turned, in the mean metric of its quadrilateral, and may be."""
+        a, b, c, d = self.quads(edge)
+        uv, metric = self.nodes.uv, self.nodes.metric
+        m = (metric[a] + metric[b] + metric[c] + metric[d]).T
+        root = np.sqrt(np.maximum(m[0] * m[2] - m[1] ** 2, 0.0))
+        ca, cb, da, db = ((uv[q] - uv[p]).T for p, q in ((c, a), (c, b), (d, a), (d, b)))
+        now = _angle(m, root, ca, cb) + _angle(m, root, db, da)
+        then = _angle(m, root, -da, -ca) + _angle(m, root, -cb, -db)
+        at_a, at_b = _cross(da, ca), _cross(cb, db)
+        return np.asarray((now - then > FLIP_GAIN) & (np.minimum(at_a, at_b) > THINNEST * (at_a + at_b)))
+
+    def _rename(self, old: list[Ints], new: list[Ints]) -> None:
+        """Half-edges have new numbers: hand their twins over, which may have new numbers themselves."""
+        was, now = np.concatenate(old), np.concatenate(new)
+        number = np.arange(len(self.twin))
+        number[was] = now
+        twin = self.twin[was]
+        self.twin[now[twin < 0]] = -1
+        self._pair(now[twin >= 0], number[twin[twin >= 0]])
+
+    def _pair(self, one: Ints, two: Ints) -> None:
+        self.twin[one], self.twin[two] = two, one
 
 
 def _twins(triangles: Ints, n_nodes: int) -> Ints:
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    key = np.minimum(start, end) * n_nodes + np.maximum(start, end)
+    tail, head = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    key = np.minimum(tail, head) * n_nodes + np.maximum(tail, head)
     order = np.argsort(key, kind="stable")
-    same = np.flatnonzero(key[order][1:] == key[order][:-1])
+    same = np.flatnonzero(key[order[1:]] == key[order[:-1]])
     twin = np.full(len(key), -1, dtype=np.int64)
     twin[order[same]], twin[order[same + 1]] = order[same + 1], order[same]
     return twin
 
 
 def _next(half: Ints) -> Ints:
-    return half - half % 3 + (half + 1) % 3
+    return np.asarray(half + np.where(half % 3 == 2, -2, 1))
+
+
+def _previous(half: Ints) -> Ints:
+    return np.asarray(half + np.where(half % 3 == 0, 2, -1))
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return np.asarray(a[0] * b[1] - a[1] * b[0])
 
 
 def _angle(m: Floats, root: Floats, a: Floats, b: Floats) -> Floats:
-    """Angle from a to b in the metric, rad, within (-pi, pi]."""
-    dot = (
-        m[:, 0] * a[:, 0] * b[:, 0]
-        + m[:, 1] * (a[:, 0] * b[:, 1] + a[:, 1] * b[:, 0])
-        + m[:, 2] * a[:, 1] * b[:, 1]
-    )
-    return np.arctan2(root * _cross(a, b), dot)
+    """Angle from a to b in the metric, rad, positive counter-clockwise."""
+    dot = m[0] * a[0] * b[0] + m[1] * (a[0] * b[1] + a[1] * b[0]) + m[2] * a[1] * b[1]
+    return np.asarray(np.arctan2(root * _cross(a, b), dot))

@@ -1,9 +1,10 @@
-"""What tessellation asks of a CAD face: its points, normals and fundamental forms."""
+"""What tessellation asks of a CAD face: its points, normals and fundamental forms at many places at once."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,31 +12,62 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Face
 
+Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SINGULAR = 1e-9  # |Su x Sv| below this share of |Su|^2 + |Sv|^2: a pole, an apex, an edge shrunk to a point
-ASIDE = 1e-4  # how far towards the middle of the face its forms are taken there, as a share of the parameters
+# |Su x Sv| below this share of |Su|^2 + |Sv|^2 is a pole: a rim shrunk to a point, as on a sphere or a cone.
+SINGULAR: Final = 1e-9
+# How far towards the middle of the face the forms of a pole are taken, as a share of the parameters.
+ASIDE: Final = 1e-4
+# Samples along each parameter that decide on the kind of a face.
+SAMPLES: Final = 12
+# rad; a face whose Gauss image is smaller unrolls flat for all that cloth could tell: no more shear than this.
+FLATTEST: Final = 1e-4
+# A doubly curved face is looked at in at least so many places along its length.
+FEWEST_LOOKS: Final = 8
 
 
-@dataclass
-class Nodes:
-    """Nodes on CAD faces; a node belongs to one face and to one side of a seam.
+@dataclass(frozen=True)
+class Tolerances:
+    """How far facets may depart from the CAD faces.
 
     Attributes
     ----------
-    face : (k,) int
-        Index of the CAD face.
-    uv : (k, 2) float
+    chord : float, mm
+        Largest gap between a facet and the face.
+    angle : float, rad
+        Largest turn of the normal from node to node on developable faces, and of a crease from one segment to
+        the next.
+    gauss_angle : float, rad
+        Largest turn of the normal from node to node on doubly curved faces.
+    """
+
+    chord: float
+    angle: float
+    gauss_angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Places on CAD faces; a node belongs to one face and to one side of a seam.
+
+    Attributes
+    ----------
+    face : (k,) int64
+        Index of the face.
+    uv : (k, 2) float64
         Parameters on the face, scaled so that both are roughly millimetres.
-    position, normal : (k, 3) float
+    position, normal : (k, 3) float64
         Point in mm; unit normal Su x Sv, whichever way the face is turned.
-    tangent : (k, 2, 3) float
+    tangent : (k, 2, 3) float64
         Derivatives Su, Sv by the scaled parameters.
-    metric : (k, 3) float
+    metric : (k, 3) float64
         M_uu, M_uv, M_vv of the metric of :mod:`meshdrape.mould.facets`.
-    curvature : (k,) float
+    curvature : (k,) float64
         Gaussian curvature, 1/mm^2.
+    pole : (k,) bool
+        Whether the parameters have a pole here; the forms are then those beside it.
     """
 
     face: Ints
@@ -45,50 +77,109 @@ class Nodes:
     tangent: Floats
     metric: Floats
     curvature: Floats
-    singular: NDArray[np.bool_]
+    pole: Bools
 
-    def take(self, index: Ints) -> Nodes:
+    def __getitem__(self, index: Ints) -> Nodes:
         """Nodes at the given places."""
         return Nodes(*(getattr(self, field.name)[index] for field in fields(self)))
 
+    def __len__(self) -> int:
+        return len(self.face)
+
     @staticmethod
     def joined(parts: list[Nodes]) -> Nodes:
-        """All nodes of the parts, one after the other."""
+        """Return all nodes of the parts, one part after the other."""
         return Nodes(
             *(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Nodes))
         )
 
 
 class Patch:
-    """One CAD face, ready to be evaluated at many points.
+    """One CAD face, ready to be evaluated.
 
     Parameters
     ----------
-    face
-        The face; its location is applied, its orientation is not.
-    index
+    face : TopoDS_Face
+        Its location is applied, its orientation is not.
+    index : int
         What :attr:`Nodes.face` is to say.
+    tolerances : Tolerances, optional
+        They scale the metric, which is zero without.
     """
 
-    def __init__(self, face: TopoDS_Face, index: int) -> None:
+    def __init__(self, face: TopoDS_Face, index: int = 0, tolerances: Tolerances | None = None) -> None:
         from OCP.BRepAdaptor import BRepAdaptor_Surface
         from OCP.BRepTools import BRepTools
         from OCP.gp import gp_Pnt, gp_Vec
+        from OCP.TopAbs import TopAbs_Orientation
 
         self.face = face
         self.index = index
+        self.reversed = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
         self.surface = BRepAdaptor_Surface(face)
-        self.length = self.angle = 1.0
         self._point, self._vectors = gp_Pnt(), [gp_Vec() for _ in range(5)]
         u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
-        self.bounds = np.array([[u0, v0], [u1, v1]])
+        self._bounds = np.array([[u0, v0], [u1, v1]])
         self.scale = np.ones(2)
-        grid = np.array([[1, 1], [1, 3], [3, 1], [3, 3]]) / 4
-        derivatives = self._evaluate(self.bounds[0] + grid * (self.bounds[1] - self.bounds[0]))
-        self.scale = np.linalg.norm(derivatives[:, 1:3], axis=2).mean(axis=0)
+        self._length = self._angle = np.inf
+        self.scale = np.linalg.norm(self._evaluate(self._grid())[:, 1:3], axis=2).mean(axis=0)
+        self.scale[self.scale == 0] = 1.0
+        if tolerances is None:
+            return
+        extent = float(np.linalg.norm(np.ptp(self.samples.position, axis=0)))
+        self._length = extent if self.developable else extent / self._looks()
+        self._angle = tolerances.angle if self.developable else tolerances.gauss_angle
+
+    @cached_property
+    def samples(self) -> Nodes:
+        """Nodes spread over the face; over its parameters, if none of those lie within its outline."""
+        from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+        from OCP.gp import gp_Pnt2d
+        from OCP.TopAbs import TopAbs_State
+
+        uv = self._grid()
+        classifier = BRepTopAdaptor_FClass2d(self.face, 1e-7)
+        inside = np.array(
+            [classifier.Perform(gp_Pnt2d(u, v)) != TopAbs_State.TopAbs_OUT for u, v in uv.tolist()]
+        )
+        return self.nodes(uv[inside if inside.any() else slice(None)] * self.scale)
+
+    @cached_property
+    def developable(self) -> bool:
+        """Whether the face unrolls flat without stretching, to within what a net could tell."""
+        samples = self.samples
+        area = np.linalg.norm(np.cross(samples.tangent[:, 0], samples.tangent[:, 1]), axis=1)
+        cell = np.prod(np.diff(self._bounds, axis=0) * self.scale) / SAMPLES**2
+        return bool(np.sum(np.abs(samples.curvature) * area) * cell < FLATTEST)
+
+    def nodes(self, uv: Floats) -> Nodes:
+        """Return the nodes at scaled parameters, (k, 2)."""
+        values = self._evaluate(uv / self.scale)
+        position = values[:, 0].copy()
+        normal = np.cross(values[:, 1], values[:, 2])
+        pole = np.linalg.norm(normal, axis=1) <= SINGULAR * (values[:, 1:3] ** 2).sum(axis=(1, 2))
+        if pole.any():
+            aside = uv[pole] / self.scale
+            values[pole] = self._evaluate(aside + ASIDE * (self._bounds.mean(axis=0) - aside))
+            normal = np.cross(values[:, 1], values[:, 2])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
+        tangent = values[:, 1:3] / self.scale[:, None]
+        second = (
+            values[:, [3, 5, 4]]
+            / np.array([self.scale[0] ** 2, self.scale.prod(), self.scale[1] ** 2])[:, None]
+        )
+        first_form = np.einsum("kpi,kpi->kp", tangent[:, [0, 0, 1]], tangent[:, [0, 1, 1]])
+        second_form = np.einsum("kpi,ki->kp", second, normal)
+        (e, f, g), (k, m, n) = first_form.T, second_form.T
+        area2 = np.maximum(e * g - f * f, np.finfo(float).tiny)
+        gauss = (k * n - m * m) / area2
+        twice_mean = (e * n - 2 * f * m + g * k) / area2
+        third_form = twice_mean[:, None] * second_form - gauss[:, None] * first_form
+        metric = first_form / self._length**2 + third_form / self._angle**2
+        return Nodes(np.full(len(uv), self.index), uv, position, normal, tangent, metric, gauss, pole)
 
     def _evaluate(self, uv: Floats) -> Floats:
-        """S, Su, Sv, Suu, Svv, Suv at unscaled parameters, shape (k, 6, 3)."""
+        """S, Su, Sv, Suu, Svv, Suv at unscaled parameters, (k, 6, 3)."""
         evaluate, point, vectors = self.surface.D2, self._point, self._vectors
         su, sv, suu, svv, suv = vectors
         rows = []
@@ -97,47 +188,18 @@ class Patch:
             rows.append(point.Coord() + su.Coord() + sv.Coord() + suu.Coord() + svv.Coord() + suv.Coord())
         return np.array(rows).reshape(-1, 6, 3)
 
-    def nodes(self, uv: Floats) -> Nodes:
-        """Nodes at scaled parameters, shape (k, 2)."""
-        values = self._evaluate(uv / self.scale)
-        position = values[:, 0].copy()
-        normal = np.cross(values[:, 1], values[:, 2])
-        singular = np.linalg.norm(normal, axis=1) <= SINGULAR * (values[:, 1:3] ** 2).sum(axis=(1, 2))
-        if singular.any():
-            aside = uv[singular] / self.scale
-            aside += ASIDE * (self.bounds.mean(axis=0) - aside)
-            values[singular] = self._evaluate(aside)
-            normal = np.cross(values[:, 1], values[:, 2])
-        normal /= np.linalg.norm(normal, axis=1)[:, None]
-        tangent = values[:, 1:3] / self.scale[:, None]
-        second = np.stack(
-            [
-                values[:, 3] / self.scale[0] ** 2,
-                values[:, 5] / self.scale.prod(),
-                values[:, 4] / self.scale[1] ** 2,
-            ],
-            axis=1,
-        )
-        first_form = np.stack(
-            [
-                _dot(tangent[:, 0], tangent[:, 0]),
-                _dot(tangent[:, 0], tangent[:, 1]),
-                _dot(tangent[:, 1], tangent[:, 1]),
-            ],
-            axis=1,
-        )
-        second_form = np.einsum("kij,kj->ki", second, normal)
-        area = first_form[:, 0] * first_form[:, 2] - first_form[:, 1] ** 2
-        gauss = (second_form[:, 0] * second_form[:, 2] - second_form[:, 1] ** 2) / area
-        twice_mean = (
-            first_form[:, 0] * second_form[:, 2]
-            - 2 * first_form[:, 1] * second_form[:, 1]
-            + first_form[:, 2] * second_form[:, 0]
-        ) / area
-        third_form = twice_mean[:, None] * second_form - gauss[:, None] * first_form
-        metric = first_form / self.length**2 + third_form / self.angle**2
-        return Nodes(np.full(len(uv), self.index), uv, position, normal, tangent, metric, gauss, singular)
+    def _grid(self) -> Floats:
+        """Middles of a grid of cells over the parameters, unscaled, (SAMPLES**2, 2)."""
+        middle = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        grid = np.stack(np.meshgrid(middle, middle, indexing="ij"), axis=-1).reshape(-1, 2)
+        return np.asarray(self._bounds[0] + grid * np.diff(self._bounds, axis=0))
 
+    def _looks(self) -> int:
+        """How many nodes along the face at least: one for each span of a spline, within reason."""
+        from OCP.GeomAbs import GeomAbs_Shape
 
-def _dot(a: Floats, b: Floats) -> Floats:
-    return np.einsum("ij,ij->i", a, b)
+        spans = (
+            self.surface.NbUIntervals(GeomAbs_Shape.GeomAbs_C2),
+            self.surface.NbVIntervals(GeomAbs_Shape.GeomAbs_C2),
+        )
+        return int(min(max(FEWEST_LOOKS, *spans), 4 * FEWEST_LOOKS))

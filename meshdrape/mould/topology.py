@@ -110,7 +110,7 @@ def misfacing(triangles: Ints, joints: Joints) -> tuple[Bools, Bools, Ints]:
     size = np.bincount(half, minlength=2 * m)
     # numbers of parts go up with their first member
     lesser = (size[half] < size[turned]) | ((size[half] == size[turned]) & (half > turned))
-    return lesser & ~one_sided, one_sided, half
+    return lesser, one_sided, half
 
 
 def _parts(a: Ints, b: Ints, n: int) -> Ints:

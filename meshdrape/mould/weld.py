@@ -17,13 +17,12 @@ ROUND_OFF: Final = 4 * float(np.finfo(np.float32).eps)
 
 def welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     """Return the mesh with vertices of equal coordinates made one, in the order of their first."""
-    points = vertices + 0.0  # minus zero is zero
-    order = np.lexsort(points.T)
-    ordered = points[order]
+    order = np.lexsort(vertices.T)
+    ordered = vertices[order]
     new = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)]) if len(order) else np.empty(0, bool)
-    first = np.empty(len(points), dtype=np.int64)
+    first = np.empty(len(order), dtype=np.int64)
     first[order] = order[new][np.cumsum(new) - 1]
-    return _merged(points, triangles, first)
+    return _merged(vertices, triangles, first)
 
 
 def welded_along_borders(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:

@@ -229,11 +229,12 @@ def test_faults_do_not_depend_on_numbering_or_place(case):
     assert {fault.kind: fault.count for fault in report.faults} == counts
 
 
+@pytest.mark.parametrize("shift", [0, 1, 2])
 @pytest.mark.parametrize("scale", [1e-30, 1e-6, 1.0, 1e6, 1e10])
 @pytest.mark.parametrize(("height", "flat"), [(2e-12, False), (5e-13, True)])
-def test_zero_area_is_relative_to_the_longest_edge(scale, height, flat):
+def test_zero_area_is_relative_to_the_longest_edge(scale, height, flat, shift):
     vertices = scale * np.array([[0, 0, 0], [1, 0, 0], [0.4, height, 0]])
-    assert examine(vertices, np.array([[0, 1, 2]])).count(FaultKind.ZERO_AREA) == int(flat)
+    assert examine(vertices, np.roll([[0, 1, 2]], shift)).count(FaultKind.ZERO_AREA) == int(flat)
 
 
 @pytest.mark.parametrize(

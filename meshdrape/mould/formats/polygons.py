@@ -86,7 +86,4 @@ def _ears(vertices: Floats, polygon: Ints) -> Ints:
     ears = mapbox_earcut.triangulate_float64(flat, np.array([k], dtype=np.uint32)).reshape(-1, 3).astype(np.int64)
     if len(ears) != k - 2:
         return polygon[fan]
-    u, v = flat[ears[:, 1]] - flat[ears[:, 0]], flat[ears[:, 2]] - flat[ears[:, 0]]
-    backwards = u[:, 0] * v[:, 1] < u[:, 1] * v[:, 0]
-    ears[backwards] = ears[backwards][:, ::-1]
     return np.asarray(polygon[ears])

@@ -1,0 +1,107 @@
+"""meshdrape inspect MOULD: what is in the file, before anything is draped."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from typing import TYPE_CHECKING, Any
+
+from meshdrape.cli.main import BAD_INPUT, DONE
+from meshdrape.cli.options import add_reading_options, reading
+
+if TYPE_CHECKING:
+    from meshdrape.mould.inspect import Inspection
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_reading_options(parser)
+    parser.add_argument("--json", action="store_true", help="print as JSON")
+
+
+def run(options: argparse.Namespace, arguments: list[str]) -> int:
+    """List faces and faults; a mesh with faults is bad input."""
+    del arguments
+    from meshdrape.mould.inspect import inspect_mould
+
+    found = inspect_mould(options.mould, **reading(options))
+    facts = _facts(found)
+    if options.json:
+        from meshdrape.output import json_text
+
+        sys.stdout.write(json_text(facts))
+    else:
+        sys.stdout.write(_report(facts))
+    if found.faults:
+        sys.stderr.write(f"meshdrape: {found.path} cannot be draped as it is: repair it with --heal, or in CAD\n")
+        return BAD_INPUT
+    return DONE
+
+
+def _facts(found: Inspection) -> dict[str, Any]:
+    mould = found.mould
+    facts: dict[str, Any] = {
+        "file": str(found.path),
+        "closed_solid": found.closed,
+        "faces": [
+            {
+                "id": face.id,
+                "name": face.name,
+                "kind": face.kind,
+                "area_mm2": face.area,
+                "centre": face.centre.tolist(),
+                "normal": face.normal.tolist(),
+                "neighbours": list(face.neighbours),
+                "developable": face.developable,
+            }
+            for face in found.cad_faces
+        ],
+        "faults": [
+            {"kind": str(fault.kind), "count": fault.count, "first_at": list(fault.place)} for fault in found.faults
+        ],
+        "notes": [] if mould is None else list(mould.notes),
+    }
+    if mould is not None:
+        from meshdrape.weave.noise import mesh_noise
+
+        facts |= {
+            "size_mm": mould.size.tolist(),
+            "area_mm2": float(mould.surface.face_area.sum()),
+            "triangles": len(mould.triangles),
+            "chord_tolerance_mm": mould.chord_tolerance,
+            "angle_tolerance_deg": None if mould.angle_tolerance is None else math.degrees(mould.angle_tolerance),
+            "mesh_noise_deg": math.degrees(mesh_noise(mould.surface)),
+        }
+    return facts
+
+
+def _report(facts: dict[str, Any]) -> str:
+    lines = [facts["file"]]
+    if "size_mm" in facts:
+        size = " x ".join(f"{v:,.1f}" for v in facts["size_mm"])
+        lines.append(f"  size        {size} mm, area {facts['area_mm2'] / 1e6:.4g} m2")
+        told = f"{facts['triangles']:,}"
+        if facts["angle_tolerance_deg"] is not None:
+            told += f" at {facts['angle_tolerance_deg']:g} deg and {facts['chord_tolerance_mm']:g} mm"
+        lines.append(f"  triangles   {told}")
+        lines.append(f"  mesh noise  {facts['mesh_noise_deg']:.3f} deg of shear")
+    lines += [f"  note        {note}" for note in facts["notes"]]
+    lines += [
+        f"  FAULT       {fault['count']} x {fault['kind']}, first at ({', '.join(f'{v:.6g}' for v in fault['first_at'])})"
+        for fault in facts["faults"]
+    ]
+    if facts["faces"]:
+        if facts["closed_solid"]:
+            lines.append('  a closed solid: choose the faces the cloth lies on, --faces 1,2 or --faces ">Z"')
+        lines.append(
+            f"  {'face':>4}  {'name':12}  {'type':10}  {'area mm2':>12}  {'normal at centre':24}  {'neighbours':14}  unrolls"
+        )
+        for face in facts["faces"]:
+            normal = ", ".join(f"{v:.3f}" for v in face["normal"])
+            beside = ",".join(map(str, face["neighbours"]))
+            lines.append(
+                f"  {face['id']:>4}  {face['name'] or '':12}  {face['kind']:10}  {face['area_mm2']:>12,.0f}  "
+                f"({normal + ')':23}  {beside:14}  {'yes' if face['developable'] else 'no'}"
+            )
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,76 @@
+"""What a mould file holds, whether or not it can be draped."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from meshdrape.errors import SelectionError
+from meshdrape.mould.check import Fault, as_arrays, examine
+from meshdrape.mould.files import existing_file
+from meshdrape.mould.meshfile import read_mesh
+from meshdrape.mould.mould import CadFace, Mould
+from meshdrape.mould.read import MESH, read_mould
+from meshdrape.mould.units import millimetres
+
+
+@dataclass(frozen=True, eq=False)
+class Inspection:
+    """What :func:`inspect_mould` found.
+
+    Attributes
+    ----------
+    path : Path
+    mould : Mould or None
+        The mould as it would be draped: all faces of a B-rep, closed or not; None for a mesh with faults.
+    cad_faces : tuple of CadFace
+        Every face of a B-rep; none for a mesh.
+    closed : bool
+        Whether the file holds a closed solid, of which faces have to be chosen.
+    faults : tuple of Fault
+        What keeps a mesh from being draped.
+    """
+
+    path: Path
+    mould: Mould | None
+    cad_faces: tuple[CadFace, ...]
+    closed: bool
+    faults: tuple[Fault, ...]
+
+
+def inspect_mould(
+    path: str | os.PathLike[str],
+    unit: str | None = None,
+    parameters: Mapping[str, Any] | None = None,
+    **tolerances: float,
+) -> Inspection:
+    """Look into a mould file: its faces, its mesh and what is wrong with that.
+
+    Parameters
+    ----------
+    path, unit, parameters, tolerances
+        As for :func:`meshdrape.read_mould`.
+
+    Raises
+    ------
+    FileError
+        As for :func:`meshdrape.read_mould`.
+    """
+    file = Path(path)
+    if file.suffix.lower() in MESH:
+        mesh = read_mesh(existing_file(file))
+        vertices, triangles = as_arrays(mesh.vertices, mesh.triangles, millimetres(unit or "mm"))
+        report = examine(vertices, triangles)
+        mould = None if report.faults else read_mould(file, unit=unit)
+        return Inspection(file, mould, (), False, report.faults)
+    closed = False
+    try:
+        mould = read_mould(file, unit=unit, parameters=parameters, **tolerances)
+    except SelectionError as error:
+        closed = True
+        everything = [face.id for face in error.faces if isinstance(face, CadFace)]
+        mould = read_mould(file, everything, parameters=parameters, **tolerances)
+    return Inspection(file, mould, mould.cad_faces, closed, ())

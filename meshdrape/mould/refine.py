@@ -1,0 +1,121 @@
+"""Edges of facets split until the facets follow the CAD faces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from meshdrape.errors import MouldError
+from meshdrape.mould.facets import Facets
+from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances
+
+# The image of an edge on its face may lie beside its chord by this much in the metric, and by this share of
+# the height of the triangles on it: beyond, a facet could lie the wrong way up.
+MOST_DRIFT: Final = 0.1
+DRIFT_OF_HEIGHT: Final = 0.5
+LEAST_HEIGHT: Final = 0.02
+# Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
+SIZE_CLASS: Final = 1.25
+MOST_TRIANGLES: Final = 2_000_000
+
+Evaluate = Callable[[Ints, Floats], Nodes]
+
+
+def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate: Evaluate) -> None:
+    """Split inner edges in the middle, largest first, and keep the facets Delaunay.
+
+    Parameters
+    ----------
+    facets : Facets
+        Changed in place.
+    tolerances : Tolerances
+    developable : (n_faces,) bool
+        These keep to their outlines, unless an edge between two nodes there turns the normal by far too much.
+    evaluate : callable
+        Nodes on the faces of the given indices, (k,), at the given parameters, (k, 2).
+
+    Raises
+    ------
+    MouldError
+        The tolerances ask for more triangles than any mould needs.
+    """
+    random = np.random.default_rng(0)
+    while True:
+        edge = facets.inner_edges()
+        size = _size(facets, edge, tolerances, developable)
+        edge, size = edge[size > 1], size[size > 1]
+        edge = edge[
+            facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))
+        ]
+        if not len(edge):
+            return
+        if len(facets.triangles) > MOST_TRIANGLES:
+            msg = (
+                f"the mould takes more than {MOST_TRIANGLES} triangles at these tolerances; make them larger"
+            )
+            raise MouldError(msg)
+        a, b, _, _ = facets.quads(edge)
+        middle = (facets.nodes.uv[a] + facets.nodes.uv[b]) / 2
+        facets.make_delaunay(facets.split(edge, evaluate(facets.nodes.face[a], middle)))
+
+
+def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools) -> Floats:
+    """Size of inner edges; 1 is the largest there may be."""
+    a, b, c, d = facets.quads(edge)
+    nodes = facets.nodes
+    flat = developable[nodes.face[a]]
+    size = np.zeros(len(edge))
+    size[flat] = np.linalg.norm(nodes.normal[a[flat]] - nodes.normal[b[flat]], axis=1) / (
+        2 * tolerances.angle
+    )
+    pole_a, pole_b = nodes.pole[a], nodes.pole[b]
+    size[flat & (pole_a | pole_b)] = 0.0
+    for pole, other, here in ((a, b, ~flat & pole_a), (b, a, ~flat & pole_b)):
+        size[here] = _length_from_pole(nodes, pole[here], other[here])
+    plain = ~flat & ~pole_a & ~pole_b
+    size[plain] = _plain_size(nodes, a[plain], b[plain], c[plain], d[plain], tolerances.chord)
+    return size
+
+
+def _plain_size(nodes: Nodes, a: Ints, b: Ints, c: Ints, d: Ints, chord_tolerance: float) -> Floats:
+    """Size of edges a-b on doubly curved faces: by the metric, the gap to the face and the drift on it."""
+    metric = (nodes.metric[a] + nodes.metric[b]) / 2
+    step = nodes.uv[b] - nodes.uv[a]
+    length = _length(metric, step)
+    # the middle of the cubic through both ends with their tangents, from the middle of the chord
+    bulge = np.einsum("kpi,kp->ki", nodes.tangent[a] - nodes.tangent[b], step) / 8
+    tangent, normal = (nodes.tangent[a] + nodes.tangent[b]) / 2, (nodes.normal[a] + nodes.normal[b]) / 2
+    gap = np.abs(np.einsum("ki,ki->k", bulge, normal))
+    drift = _length(metric, _in_parameters(tangent, bulge))
+    root = np.sqrt(np.maximum(metric[:, 0] * metric[:, 2] - metric[:, 1] ** 2, 0.0))
+    area = [
+        np.abs(step[:, 0] * side[:, 1] - step[:, 1] * side[:, 0])
+        for side in (nodes.uv[c] - nodes.uv[a], nodes.uv[d] - nodes.uv[a])
+    ]
+    height = np.minimum(*area) * root / np.maximum(length, np.finfo(float).tiny)
+    most = np.minimum(MOST_DRIFT, DRIFT_OF_HEIGHT * np.maximum(height, LEAST_HEIGHT))
+    return np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / most)))
+
+
+def _length_from_pole(nodes: Nodes, pole: Ints, other: Ints) -> Floats:
+    """Length of edges from a pole, where parameters say nothing, by the chord and the metric at the other end."""
+    step = _in_parameters(nodes.tangent[other], nodes.position[pole] - nodes.position[other])
+    return _length(nodes.metric[other], step)
+
+
+def _length(metric: Floats, step: Floats) -> Floats:
+    du, dv = step.T
+    return np.asarray(
+        np.sqrt(np.maximum(metric[:, 0] * du**2 + 2 * metric[:, 1] * du * dv + metric[:, 2] * dv**2, 0.0))
+    )
+
+
+def _in_parameters(tangent: Floats, vector: Floats) -> Floats:
+    """Steps in (u, v) whose images are nearest to vectors in space, (k, 2)."""
+    (su, sv), x = np.moveaxis(tangent, 1, 0), vector
+    e, f, g = (np.einsum("ki,ki->k", p, q) for p, q in ((su, su), (su, sv), (sv, sv)))
+    p, q = np.einsum("ki,ki->k", x, su), np.einsum("ki,ki->k", x, sv)
+    area2 = np.maximum(e * g - f * f, np.finfo(float).tiny)
+    return np.asarray(np.column_stack([g * p - f * q, e * q - f * p]) / area2[:, None])
