@@ -88,14 +88,15 @@ def _report(facts: dict[str, Any]) -> str:
         lines.append(f"  mesh noise  {facts['mesh_noise_deg']:.3f} deg of shear")
     lines += [f"  note        {note}" for note in facts["notes"]]
     lines += [
-        f"  FAULT       {fault['count']} x {fault['kind']}, first at ({', '.join(f'{v:.6g}' for v in fault['first_at'])})"
+        f"  FAULT       {fault['count']} x {fault['kind']}, first at " + ", ".join(f"{v:.6g}" for v in fault["first_at"])
         for fault in facts["faults"]
     ]
     if facts["faces"]:
         if facts["closed_solid"]:
             lines.append('  a closed solid: choose the faces the cloth lies on, --faces 1,2 or --faces ">Z"')
         lines.append(
-            f"  {'face':>4}  {'name':12}  {'type':10}  {'area mm2':>12}  {'normal at centre':24}  {'neighbours':14}  unrolls"
+            f"  {'face':>4}  {'name':12}  {'type':10}  {'area mm2':>12}  {'normal at centre':24}  "
+            f"{'neighbours':14}  unrolls"
         )
         for face in facts["faces"]:
             normal = ", ".join(f"{v:.3f}" for v in face["normal"])

@@ -25,7 +25,6 @@ def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
     """Every face of a shape, ids from 1 in the order of the file."""
     from OCP.TopTools import TopTools_IndexedMapOfShape
 
-    anywhere = Tolerances(CHORD_TOLERANCE, ANGLE_TOLERANCE)
     edges = TopTools_IndexedMapOfShape()
     touching: dict[int, list[int]] = {}
     for number, face in enumerate(shape.faces, start=1):
@@ -47,7 +46,7 @@ def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
                 normal=np.array(face.normalAt(centre).toTuple()),
                 centre=np.array(centre.toTuple()),
                 neighbours=tuple(sorted(neighbours[number])),
-                developable=Patch(face.wrapped, 0, anywhere).developable,
+                developable=Patch(face.wrapped).developable,
             )
         )
     return tuple(listed)
@@ -94,10 +93,8 @@ def brep_mould(
     listed = cad_faces(shape)
     chosen = select(shape, listed, faces, origin)
     picked, notes = _sewn([shape.faces[number - 1] for number in chosen])
-    named = [f"face {number} of {origin}" for number in chosen]
-    mesh = tessellate([face.wrapped for face in picked], Tolerances(chord, angle), named)
+    mesh = tessellate([face.wrapped for face in picked], chosen, Tolerances(chord, angle))
     mould = Mould.from_arrays(mesh.vertices, mesh.triangles)
-    ids = np.array(chosen)[mesh.triangle_face]
     return replace(
         mould,
         triangle_face=mesh.triangle_face,
@@ -184,10 +181,9 @@ def _sewn(faces: list[Any]) -> tuple[list[Any], tuple[str, ...]]:
             uses[key] = uses.get(key, 0) + 1
     if len(faces) < 2 or any(count > 1 for count in uses.values()):
         return faces, ()
+    import cadquery
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
     from OCP.TopoDS import TopoDS
-
-    import cadquery
 
     sewing = BRepBuilderAPI_Sewing(1e-4)
     for face in faces:

@@ -80,9 +80,7 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])
-        segments = np.stack(
-            [np.hstack([segments[:, :1], middle]), np.hstack([middle, segments[:, 1:]])]
-        ).reshape(-1, 2)
+        segments = np.stack([np.hstack([segments[:, :1], middle]), np.hstack([middle, segments[:, 1:]])]).reshape(-1, 2)
         n_probes = max(FEWEST_PROBES, n_probes // 2)
         if len(segments) > MOST_NODES:
             msg = f"an edge takes more than {MOST_NODES} nodes at these tolerances; make them larger"
@@ -116,15 +114,11 @@ def _is_crease(passages: list[Passage], segments: Floats) -> bool:
     if len(passages) < 2:
         return False
     at = np.linspace(segments[0, 0], segments[-1, 1], 11)[1:-1]
-    one, other = (
-        passage.nodes(at).normal * (-1 if passage.patch.reversed else 1) for passage in passages[:2]
-    )
+    one, other = (passage.nodes(at).normal * (-1 if passage.patch.reversed else 1) for passage in passages[:2])
     return bool((np.linalg.norm(one - other, axis=1) > CREASE).any())
 
 
-def _leaves_chord(
-    curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float
-) -> Bools:
+def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float) -> Bools:
     """Whether the curve leaves the chord of a segment by more than the tolerance or the angle, (s,)."""
     from OCP.gp import gp_Pnt, gp_Vec
 

@@ -45,13 +45,14 @@ def inspect_mould(
     path: str | os.PathLike[str],
     unit: str | None = None,
     parameters: Mapping[str, Any] | None = None,
-    **tolerances: float,
+    chord_tolerance: float | None = None,
+    angle_tolerance: float | None = None,
 ) -> Inspection:
     """Look into a mould file: its faces, its mesh and what is wrong with that.
 
     Parameters
     ----------
-    path, unit, parameters, tolerances
+    path, unit, parameters, chord_tolerance, angle_tolerance
         As for :func:`meshdrape.read_mould`.
 
     Raises
@@ -68,9 +69,9 @@ def inspect_mould(
         return Inspection(file, mould, (), False, report.faults)
     closed = False
     try:
-        mould = read_mould(file, unit=unit, parameters=parameters, **tolerances)
+        mould = read_mould(file, None, unit, chord_tolerance, angle_tolerance, parameters=parameters)
     except SelectionError as error:
         closed = True
         everything = [face.id for face in error.faces if isinstance(face, CadFace)]
-        mould = read_mould(file, everything, parameters=parameters, **tolerances)
+        mould = read_mould(file, everything, None, chord_tolerance, angle_tolerance, parameters=parameters)
     return Inspection(file, mould, mould.cad_faces, closed, ())

@@ -44,26 +44,23 @@ class Outline:
     ring_end: Ints
 
     def triangles(self) -> Ints | None:
-        """Return triangles between the nodes, (t, 3); None if the outline crosses itself, so that there are none.
+        """Return triangles between the nodes, counter-clockwise, (t, 3); None where the outline crosses itself.
 
-        Raises nothing; an outline of fewer than three nodes has no triangles.
+        The triangles of an outline of fewer than three nodes are none.
         """
-        from mapbox_earcut import triangulate_float64
-
         uv = self.nodes.uv
         if len(uv) < 3:
             return np.empty((0, 3), dtype=np.int64)
         rings = np.split(np.arange(len(uv)), self.ring_end[:-1])
         bent = np.concatenate([_bent_inwards(uv[ring]) for ring in rings])
-        cut = triangulate_float64(bent, self.ring_end.astype(np.uint32)).reshape(-1, 3).astype(np.int64)
-        area = _doubled_area(uv[cut])
-        if area.sum() < 0:
-            cut, area = cut[:, ::-1], -area
-        outlined = sum(_shoelace(uv[ring]) for ring in rings)
-        whole = len(cut) == len(uv) + 2 * (len(rings) - 1) - 2 and bool(
-            np.isclose(area.sum(), abs(outlined), rtol=1e-6)
-        )
-        return np.ascontiguousarray(cut) if whole and area.min() > 0 else None
+        doubled = abs(sum(_shoelace(uv[ring]) for ring in rings))
+        for cut in (_delaunay_cut, _ear_cut):
+            triangles = cut(bent, self.nodes.metric.mean(axis=0), self.ring_end)
+            area = _doubled_area(uv[triangles])
+            whole = len(triangles) == len(uv) + 2 * len(rings) - 4 and bool(np.isclose(area.sum(), doubled, rtol=1e-6))
+            if whole and area.min() > 0:
+                return triangles
+        return None
 
 
 class Outlines:
@@ -86,9 +83,7 @@ class Outlines:
             passages.setdefault(passage.key, []).append(passage)
         self._edge = {key: here[0].edge for key, here in passages.items()}
         self._ends = {key: self._end_vertices(edge) for key, edge in self._edge.items()}
-        self._parameter = {
-            key: divide(here, tolerances) for key, here in passages.items() if not here[0].is_point
-        }
+        self._parameter = {key: divide(here, tolerances) for key, here in passages.items() if not here[0].is_point}
         self._count()
 
     def outline(self, index: int) -> Outline:
@@ -188,6 +183,47 @@ def _bent_inwards(ring: Floats) -> Floats:
         share = (ring[side] - ring[corner]) @ chord / (chord @ chord)
         bent[side] += BEND * (share * (1 - share))[:, None] * np.array([-chord[1], chord[0]])
     return bent
+
+
+def _delaunay_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
+    """Delaunay triangles inside an outline, in one metric for all of it; those of a part if they cross its rings.
+
+    Next to what is wanted in the end where the metric hardly varies: ears of a long strip make a fan that would
+    have to be turned over diagonal by diagonal.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import Delaunay, QhullError
+
+    uu, mixed, vv = metric
+    stretched = uv @ np.linalg.cholesky(np.array([[uu, mixed], [mixed, vv]]) + 1e-12 * (uu + vv) * np.eye(2))
+    try:
+        found = Delaunay(stretched)
+    except QhullError:
+        return np.empty((0, 3), dtype=np.int64)
+    triangles, beyond = found.simplices.astype(np.int64), found.neighbors  # neighbour k lies opposite corner k
+    clockwise = _doubled_area(uv[triangles]) < 0
+    triangles[clockwise], beyond[clockwise] = triangles[clockwise][:, ::-1], beyond[clockwise][:, ::-1]
+    n = len(uv)
+    following = np.arange(1, n + 1)
+    following[ring_end - 1] = np.concatenate([[0], ring_end[:-1]])
+    tail, head = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
+    inside, outside = following[tail] == head, following[head] == tail
+    linked = (beyond >= 0) & ~inside & ~outside
+    graph = coo_array((np.ones(linked.sum()), (np.nonzero(linked)[0], beyond[linked])), shape=(len(triangles),) * 2)
+    _, part = connected_components(graph, directed=False)
+    wanted = np.zeros(part.max() + 1, dtype=bool)
+    wanted[part[inside.any(axis=1)]] = True
+    return np.ascontiguousarray(triangles[wanted[part]])
+
+
+def _ear_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
+    """Triangles inside an outline, whatever its shape; too few or wrong ones if it crosses itself."""
+    from mapbox_earcut import triangulate_float64
+
+    del metric
+    triangles = triangulate_float64(uv, ring_end.astype(np.uint32)).reshape(-1, 3).astype(np.int64)
+    return np.ascontiguousarray(triangles if _doubled_area(uv[triangles]).sum() > 0 else triangles[:, ::-1])
 
 
 def _shoelace(ring: Floats) -> float:

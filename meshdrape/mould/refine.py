@@ -46,15 +46,11 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
         edge = facets.inner_edges()
         size = _size(facets, edge, tolerances, developable)
         edge, size = edge[size > 1], size[size > 1]
-        edge = edge[
-            facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))
-        ]
+        edge = edge[facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))]
         if not len(edge):
             return
         if len(facets.triangles) > MOST_TRIANGLES:
-            msg = (
-                f"the mould takes more than {MOST_TRIANGLES} triangles at these tolerances; make them larger"
-            )
+            msg = f"the mould takes more than {MOST_TRIANGLES} triangles at these tolerances; make them larger"
             raise MouldError(msg)
         a, b, _, _ = facets.quads(edge)
         middle = (facets.nodes.uv[a] + facets.nodes.uv[b]) / 2
@@ -67,9 +63,7 @@ def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools
     nodes = facets.nodes
     flat = developable[nodes.face[a]]
     size = np.zeros(len(edge))
-    size[flat] = np.linalg.norm(nodes.normal[a[flat]] - nodes.normal[b[flat]], axis=1) / (
-        2 * tolerances.angle
-    )
+    size[flat] = np.linalg.norm(nodes.normal[a[flat]] - nodes.normal[b[flat]], axis=1) / (2 * tolerances.angle)
     pole_a, pole_b = nodes.pole[a], nodes.pole[b]
     size[flat & (pole_a | pole_b)] = 0.0
     for pole, other, here in ((a, b, ~flat & pole_a), (b, a, ~flat & pole_b)):
@@ -96,7 +90,7 @@ def _plain_size(nodes: Nodes, a: Ints, b: Ints, c: Ints, d: Ints, chord_toleranc
     ]
     height = np.minimum(*area) * root / np.maximum(length, np.finfo(float).tiny)
     most = np.minimum(MOST_DRIFT, DRIFT_OF_HEIGHT * np.maximum(height, LEAST_HEIGHT))
-    return np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / most)))
+    return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / most))))
 
 
 def _length_from_pole(nodes: Nodes, pole: Ints, other: Ints) -> Floats:

@@ -42,7 +42,8 @@ def run_script(path: Path, parameters: Mapping[str, Any] | None = None) -> Named
         values[name] = _value(path, name, word, known[name])
     result = model.build(build_parameters=values)
     if not result.success:
-        msg = f"{path}{_line_of(result.exception)} failed: {type(result.exception).__name__}: {_one_line(result.exception)}"
+        raised = result.exception
+        msg = f"{path}{_line_of(raised)} failed: {type(raised).__name__}: {_one_line(raised)}"
         raise FileError(msg)
     shapes = [shape for shown in result.results for shape in _shapes(cq, shown.shape)]
     if not shapes:

@@ -74,9 +74,7 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
         order = np.argsort(face, kind="stable")
         indices, first = np.unique(face[order], return_index=True)
         parts = np.split(order, first[1:])
-        found = Nodes.joined(
-            [patches[index].nodes(uv[part]) for index, part in zip(indices, parts, strict=True)]
-        )
+        found = Nodes.joined([patches[index].nodes(uv[part]) for index, part in zip(indices, parts, strict=True)])
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         return found[back]
@@ -98,13 +96,11 @@ def _cut(patches: list[Patch], outlines: Outlines, ids: Sequence[int]) -> tuple[
             return rings, [cut for cut in cuts if cut is not None]
         for index in crossed:
             outlines.halve(index)
-    msg = f"the outline of CAD face {ids[crossed[0]]} crosses itself; mend the face in CAD, or leave it out with --faces"
+    msg = f"the outline of face {ids[crossed[0]]} crosses itself; mend the face in CAD, or leave it out with --faces"
     raise MouldError(msg)
 
 
-def _assembled(
-    facets: Facets, patches: list[Patch], position: Floats, number: Ints
-) -> tuple[Floats, Ints, Ints]:
+def _assembled(facets: Facets, patches: list[Patch], position: Floats, number: Ints) -> tuple[Floats, Ints, Ints]:
     """The facets, nodes of common edges and seams made one, and the index of the face each lies on.
 
     What shrank to a line at a pole is left out.

@@ -120,10 +120,11 @@ def _vertex_cells(
     kept = (cell[:, 0] >= 0) & (seed_distance > 1e-9 * fabric.warp_spacing)
     curved, cell = curved[kept], cell[kept]
     position = surface.vertices[curved]
-    on_warp = _on_fibre(
-        position, net.positions(0, net.shape[0])[:, j0] if len(curved) else position, fabric.warp_spacing
-    )
-    on_weft = _on_fibre(position, net.positions(i0, i0 + 1)[0] if len(curved) else position, fabric.weft_spacing)
+    n_warp, n_weft = net.shape
+    warp_fibre = net.positions_at(np.arange(n_warp), np.full(n_warp, j0))
+    weft_fibre = net.positions_at(np.full(n_weft, i0), np.arange(n_weft))
+    on_warp = _on_fibre(position, warp_fibre, fabric.warp_spacing)
+    on_weft = _on_fibre(position, weft_fibre, fabric.weft_spacing)
     return surface.vertex_defect[curved], cell, on_warp, on_weft
 
 

@@ -8,6 +8,7 @@ from moulds import (
     Mesh, bumpy, cap, cube, cube_corner, cut_plate, cylinder, holed_plate, icosphere, plate, rotation, sliver_plate, step_corner,
     tube,
 )  # fmt: skip
+from unfolding import straight_line
 
 import meshdrape
 from meshdrape.errors import StartError
@@ -225,3 +226,17 @@ def test_points_on_separate_parts():
 def test_points_that_are_none(point):
     with pytest.raises(StartError, match="point"):
         distance(plate(), (0, 0, 0), point)
+
+
+def test_on_a_convex_mesh_it_is_the_shortest_straight_line():
+    """Shortest paths pass no convex vertex; every strip of triangles in sight is laid flat, with none of our kernels."""
+    mould = icosphere(2, 100).mould()
+    rng = np.random.default_rng(2)
+    for _ in range(12):
+        a = mould.surface.closest_point(_random_point(mould.surface, rng))[0]
+        near = a.position(mould.surface) + rng.normal(scale=35, size=3)
+        b = mould.surface.closest_point(near)[0]
+        ends = [point.position(mould.surface) for point in (a, b)]
+        line = straight_line(mould.surface, a.face, ends[0], b.face, ends[1], reach=150.0)
+        assert line is not None
+        assert meshdrape.geodesic_distance(mould, *ends) == pytest.approx(line.length, rel=1e-12)
