@@ -53,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     out.add_argument("--json", action="store_true", help="print the summary as JSON")
     out.add_argument("--quiet", action="store_true", help="print nothing but errors")
     out.add_argument("--no-picture", action="store_true", help="do not draw NET.png")
+    out.add_argument("--engine", choices=("fast", "libigl"), default="fast", help="libigl: every node by it; slow")
     out.add_argument("--threads", type=int, metavar="N", help="default: all cores; the net does not depend on it")
 
 
@@ -84,6 +85,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             fabric,
             options.seed,
             options.direction,
+            engine=options.engine,
             extent=options.extent,
             threads=options.threads,
             progress=progress.step,

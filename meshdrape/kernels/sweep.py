@@ -111,7 +111,7 @@ def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, report):
+def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, every, report):
     """Place the nodes (i_first + si a, j_first + sj b) of one tile, 0 <= a < i_count, 0 <= b < j_count.
 
     A node has two parents, A one step back along the warp and B one step back along the weft, and the node D that
@@ -131,6 +131,8 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
         Largest gap between the ends of a node's two edges, mm.
     slack : float
         A node this near to the border counts as on the mould, mm.
+    every : bool
+        Leave every node to be settled by others, as if it had not converged: what is found is only their first guess.
     report : (4,) int64
         Gets: nodes placed, iterations, and the (i, j) of a node that did not converge.
 
@@ -196,7 +198,7 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
             xb = xy[i, jb, 0]
             yb = xy[i, jb, 1]
             at_seed = ia == i0 and jb == j0
-            if fa == fb and fa == fd and not at_seed:
+            if fa == fb and fa == fd and not at_seed and not every:
                 # the planar fourth corner of the rhombus, if this triangle holds it
                 ux = (xb - xy[ia, jb, 0]) / warp
                 uy = (yb - xy[ia, jb, 1]) / warp
@@ -276,6 +278,8 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 plane, neighbour, frame, fa, xa, ya, ux, uy, warp, fb, xb, yb, vx, vy, weft, side, tolerance
             )
             report[1] += iterations
+            if every and code == PLACED:
+                code = NOT_CONVERGED
             if code == PLACED:
                 report[0] += 1
                 face[i, j] = f
@@ -295,7 +299,7 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 ry = py
             else:
                 known = False
-                if status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD:
+                if status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD and not every:
                     # the extension is no mould: what fails on it is lost to it, not to the cloth
                     code = OUTSIDE
                 status[i, j] = code

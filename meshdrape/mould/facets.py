@@ -22,6 +22,8 @@ from meshdrape.mould.patch import Bools, Floats, Ints, Nodes
 
 # rad of opposite angles that a flip must gain, so that round-off cannot turn a diagonal to and fro.
 FLIP_GAIN: Final = 1e-6
+# Share of a facet's tilt that a flip must gain.
+TILT_GAIN: Final = 1e-3
 # Smallest share a triangle may have of its quadrilateral in (u, v): less is three nodes in line.
 THINNEST: Final = 1e-6
 # A fan over a straight side is turned over one diagonal a round.
@@ -37,13 +39,16 @@ class Facets:
     ----------
     nodes : Nodes
     triangles : (t, 3) int64
+    face_angle : (n_faces,) float64
+        What the normal of a facet may differ by from those of the face at its corners, rad.
     twin : (3 t,) int64
         The half-edge on the other side of each, -1 on the outline.
     """
 
-    def __init__(self, nodes: Nodes, triangles: Ints) -> None:
+    def __init__(self, nodes: Nodes, triangles: Ints, face_angle: Floats) -> None:
         self.nodes = nodes
         self.triangles = triangles.copy()
+        self.face_angle = face_angle
         self.twin = _twins(triangles, len(nodes))
         self._random = np.random.default_rng(0)
 
@@ -116,17 +121,44 @@ class Facets:
         self._pair(3 * left + 1, 3 * right + 1)
         return np.concatenate([left, right])
 
+    def tilt(self, a: Ints, b: Ints, c: Ints) -> Floats:
+        """Return how far facets tilt from their face, as a multiple of what they may, (k,).
+
+        That is the angle between the normal of the facet and those of the face at its corners. A pole has no
+        normal of its own, and a facet on two nodes of one pole will not be there.
+        """
+        position, normal = self.nodes.position, self.nodes.normal
+        across = np.cross(position[b] - position[a], position[c] - position[a])
+        least = np.full(len(a), np.inf)
+        for corner in (a, b, c):
+            along = np.einsum("ki,ki->k", across, normal[corner])
+            least = np.minimum(least, np.where(self.nodes.pole[corner], np.inf, along))
+        cosine = least / np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny)
+        pole = self.nodes.pole
+        known = np.isfinite(least) & (pole[a].astype(int) + pole[b] + pole[c] < 2)
+        angle = np.arccos(np.clip(np.where(known, cosine, 1.0), -1.0, 1.0))
+        return np.asarray(angle / self.face_angle[self.nodes.face[a]])
+
     def _gains(self, edge: Ints) -> Bools:
-        """Whether a diagonal is better turned, in the mean metric of its quadrilateral, and may be."""
+        """Whether a diagonal is better turned and may be.
+
+        Better is Delaunay in the mean metric of the quadrilateral, so long as neither facet tilts too far for it,
+        and less tilt where one does.
+        """
         a, b, c, d = self.quads(edge)
-        uv, metric = self.nodes.uv, self.nodes.metric
-        m = (metric[a] + metric[b] + metric[c] + metric[d]).T
+        da, ca, cb, db = ((self.nodes.uv[q] - self.nodes.uv[p]).T for p, q in ((d, a), (c, a), (c, b), (d, b)))
+        at_a, at_b = _cross(da, ca), _cross(cb, db)
+        convex = np.minimum(at_a, at_b) > THINNEST * (at_a + at_b)
+        m = self.nodes.metric[np.stack([a, b, c, d])].sum(axis=0).T
         root = np.sqrt(np.maximum(m[0] * m[2] - m[1] ** 2, 0.0))
-        ca, cb, da, db = ((uv[q] - uv[p]).T for p, q in ((c, a), (c, b), (d, a), (d, b)))
         now = _angle(m, root, ca, cb) + _angle(m, root, db, da)
         then = _angle(m, root, -da, -ca) + _angle(m, root, -cb, -db)
-        at_a, at_b = _cross(da, ca), _cross(cb, db)
-        return np.asarray((now - then > FLIP_GAIN) & (np.minimum(at_a, at_b) > THINNEST * (at_a + at_b)))
+        tilt = np.maximum(self.tilt(a, b, c), self.tilt(b, a, d))
+        may_be = convex & ((now - then > FLIP_GAIN) | (tilt > 1.0))
+        turned = np.full(len(edge), np.inf)
+        a, b, c, d = a[may_be], b[may_be], c[may_be], d[may_be]
+        turned[may_be] = np.maximum(self.tilt(a, d, c), self.tilt(b, c, d))
+        return np.asarray(np.where(tilt > 1.0, turned < (1 - TILT_GAIN) * tilt, may_be & (turned <= 1.0)))
 
     def _rename(self, old: list[Ints], new: list[Ints]) -> None:
         """Half-edges have new numbers: hand their twins over, which may have new numbers themselves."""

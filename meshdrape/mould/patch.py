@@ -128,14 +128,14 @@ class Patch:
         u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
         self._bounds = np.array([[u0, v0], [u1, v1]])
         self.scale = np.ones(2)
-        self._length = self._angle = np.inf
+        self._length = self.angle = np.inf
         self.scale = np.linalg.norm(self._evaluate(self._grid())[:, 1:3], axis=2).mean(axis=0)
         self.scale[self.scale == 0] = 1.0
         if tolerances is None:
             return
         extent = float(np.linalg.norm(np.ptp(self.samples.position, axis=0)))
         self._length = extent if self.developable else extent / self._looks()
-        self._angle = tolerances.angle if self.developable else tolerances.gauss_angle
+        self.angle = tolerances.angle if self.developable else tolerances.gauss_angle
 
     @cached_property
     def samples(self) -> Nodes:
@@ -177,7 +177,7 @@ class Patch:
         gauss = (k * n - m * m) / area2
         twice_mean = (e * n - 2 * f * m + g * k) / area2
         third_form = twice_mean[:, None] * second_form - gauss[:, None] * first_form
-        metric = first_form / self._length**2 + third_form / self._angle**2
+        metric = first_form / self._length**2 + third_form / self.angle**2
         return Nodes(np.full(len(uv), self.index), uv, position, normal, tangent, metric, gauss, pole)
 
     def _evaluate(self, uv: Floats) -> Floats:

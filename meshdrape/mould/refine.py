@@ -11,12 +11,10 @@ from meshdrape.errors import MouldError
 from meshdrape.mould.facets import Facets
 from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances
 
-# The image of an edge on its face may lie beside its chord by this much in the metric, and by this share of
-# the height of the triangles on it: beyond, a facet could lie the wrong way up.
+# The image of an edge on its face may lie beside its chord by this much in the metric.
 MOST_DRIFT: Final = 0.1
-DRIFT_OF_HEIGHT: Final = 0.5
-LEAST_HEIGHT: Final = 0.02
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
+TILTED: Final = 1.01  # size of the longest edge of a facet that tilts too far
 SIZE_CLASS: Final = 1.25
 MOST_TRIANGLES: Final = 2_000_000
 
@@ -59,7 +57,7 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
 
 def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools) -> Floats:
     """Size of inner edges; 1 is the largest there may be."""
-    a, b, c, d = facets.quads(edge)
+    a, b, _, _ = facets.quads(edge)
     nodes = facets.nodes
     flat = developable[nodes.face[a]]
     size = np.zeros(len(edge))
@@ -69,11 +67,11 @@ def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools
     for pole, other, here in ((a, b, ~flat & pole_a), (b, a, ~flat & pole_b)):
         size[here] = _length_from_pole(nodes, pole[here], other[here])
     plain = ~flat & ~pole_a & ~pole_b
-    size[plain] = _plain_size(nodes, a[plain], b[plain], c[plain], d[plain], tolerances.chord)
-    return size
+    size[plain] = _plain_size(nodes, a[plain], b[plain], tolerances.chord)
+    return np.where(_tilting(facets, tolerances.chord)[edge], np.maximum(size, TILTED), size)
 
 
-def _plain_size(nodes: Nodes, a: Ints, b: Ints, c: Ints, d: Ints, chord_tolerance: float) -> Floats:
+def _plain_size(nodes: Nodes, a: Ints, b: Ints, chord_tolerance: float) -> Floats:
     """Size of edges a-b on doubly curved faces: by the metric, the gap to the face and the drift on it."""
     metric = (nodes.metric[a] + nodes.metric[b]) / 2
     step = nodes.uv[b] - nodes.uv[a]
@@ -83,14 +81,20 @@ def _plain_size(nodes: Nodes, a: Ints, b: Ints, c: Ints, d: Ints, chord_toleranc
     tangent, normal = (nodes.tangent[a] + nodes.tangent[b]) / 2, (nodes.normal[a] + nodes.normal[b]) / 2
     gap = np.abs(np.einsum("ki,ki->k", bulge, normal))
     drift = _length(metric, _in_parameters(tangent, bulge))
-    root = np.sqrt(np.maximum(metric[:, 0] * metric[:, 2] - metric[:, 1] ** 2, 0.0))
-    area = [
-        np.abs(step[:, 0] * side[:, 1] - step[:, 1] * side[:, 0])
-        for side in (nodes.uv[c] - nodes.uv[a], nodes.uv[d] - nodes.uv[a])
-    ]
-    height = np.minimum(*area) * root / np.maximum(length, np.finfo(float).tiny)
-    most = np.minimum(MOST_DRIFT, DRIFT_OF_HEIGHT * np.maximum(height, LEAST_HEIGHT))
-    return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / most))))
+    return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / MOST_DRIFT))))
+
+
+def _tilting(facets: Facets, chord_tolerance: float) -> Bools:
+    """Whether a half-edge is the lower one of the longest inner edge of a facet that tilts too far, (3 t,)."""
+    corners = facets.nodes.position[facets.triangles]
+    length = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    length[facets.twin.reshape(-1, 3) < 0] = 0.0
+    longest = 3 * np.arange(len(length)) + length.argmax(axis=1)
+    # what is smaller than the gap there may be anyway is left as it is
+    tilts = (facets.tilt(*facets.triangles.T) > 1.0) & (length.max(axis=1) > chord_tolerance)
+    found = np.zeros(len(facets.twin), dtype=bool)
+    found[np.minimum(longest, facets.twin[longest])[tilts]] = True
+    return found
 
 
 def _length_from_pole(nodes: Nodes, pole: Ints, other: Ints) -> Floats:

@@ -22,14 +22,17 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+ENGINES = ("fast", "libigl")
+
 
 def drape(
     mould: Mould,
     fabric: Fabric,
     seed: ArrayLike | None = None,
     direction: ArrayLike | None = None,
-    *,
+    engine: str = "fast",
     extent: tuple[float, float, float, float] | None = None,
+    *,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Net:
@@ -47,6 +50,9 @@ def drape(
         Projected on the mould; default the point of the mould nearest to its centroid.
     direction : (3,) float
         Default the longest axis of the bounding box that is not along the normal.
+    engine : "fast" or "libigl"
+        "libigl" has every node off the generators placed from libigl's distances alone: slow, the reference that
+        "fast" agrees with to 1e-9 of the spacing.
     extent : (warp-, warp+, weft-, weft+), mm
         Cloth from the seed each way; default as far as the mould reaches.
     threads : int
@@ -68,6 +74,9 @@ def drape(
         If the net would not fit in the memory.
     """
     threads = threads or os.cpu_count() or 1
+    if engine not in ENGINES:
+        msg = f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}"
+        raise StartError(msg)
     longest = max(fabric.warp_spacing, fabric.weft_spacing)
     size = float(np.linalg.norm(mould.size))
     if longest > size:
@@ -100,7 +109,7 @@ def drape(
         point, _ = part.closest_point(seed)
     if direction is None:
         direction = default_direction(part, point.face)
-    laid = lay(part, fabric, point, direction, extent, threads, progress)
+    laid = lay(part, fabric, point, direction, extent, threads, progress, settle_every=engine == "libigl")
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
     trim(surface, fabric, lattice, start, threads)

@@ -54,6 +54,8 @@ def lay(
     extent: Extent | None,
     threads: int,
     progress: Callable[[int], None] | None = None,
+    *,
+    settle_every: bool = False,
 ) -> Laid:
     """Lay a sheet from a seed point of a connected surface, without an end where it meets itself, untrimmed.
 
@@ -64,6 +66,8 @@ def lay(
         The seed, on `part`.
     direction : (3,)
         Of the warp.
+    settle_every : bool
+        Have libigl place every node.
     extent : (warp-, warp+, weft-, weft+), mm, optional
 
     Raises
@@ -86,7 +90,7 @@ def lay(
     lattice, start = lay_generators(surface, fabric, star, counts, memory, reach)
     settled = 0
     while True:
-        start, more = fill(surface, fabric, lattice, start, threads, progress)
+        start, more = fill(surface, fabric, lattice, start, threads, progress, settle_every=settle_every)
         settled += more
         grow = _room_wanted(lattice, start, counts)
         if not any(grow):

@@ -44,10 +44,17 @@ def fill(
     start: Start,
     threads: int,
     progress: Callable[[int], None] | None = None,
+    *,
+    settle_every: bool = False,
 ) -> tuple[Start, int]:
     """Place every node that its parents allow, outward from both generators.
 
     Each node depends on its parents alone, so the tiles' order, and with it the number of threads, changes nothing.
+
+    Parameters
+    ----------
+    settle_every : bool
+        Have libigl place every node, not only those that straight paths do not reach.
 
     Returns
     -------
@@ -73,7 +80,7 @@ def fill(
         settled = 0
         while not sweep(
             mesh, lattice, bent.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
-            fabric.warp_spacing, fabric.weft_spacing, tolerance, slack, report,
+            fabric.warp_spacing, fabric.weft_spacing, tolerance, slack, settle_every, report,
         ):  # fmt: skip
             settled += _settle_node(surface, fabric, lattice, bent, int(report[2]), int(report[3]), tile, slack)
         return int(report[0]), settled
@@ -148,6 +155,8 @@ def _settle_node(
     # where the sweep gave up, it left the end of the warp edge's path
     found = search.run(place((i, j)), float(tile.si * tile.sj))
     if found is None:
+        if lattice.status[a] == NodeStatus.OFF_MOULD and lattice.status[b] == NodeStatus.OFF_MOULD:
+            lattice.status[i, j] = NodeStatus.OUTSIDE
         return False
     lattice.face[i, j], lattice.xy[i, j] = found.place[0], found.place[1:]
     for family, edge, parent, step in (

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lattice import nodes_at, offsets, placed, planar_lattice, shear_deg, statuses_at
+from lattice import cells_at, nodes_at, offsets, placed, planar_lattice, shear_deg, statuses_at
 from moulds import (
     Mesh, bumpy, cap, cone, cut_plate, cylinder, grid, holed_plate, hypar, icosphere, parallelogram, plate, sliver_plate,
     triangle_plate, tube, wing_spar,
@@ -88,7 +88,8 @@ def test_net_reaches_the_very_border():
     i, j = np.meshgrid(np.arange(-10, 11), np.arange(-7, 8), indexing="ij")
     assert (statuses_at(net, i, j) == NodeStatus.PLACED).all()
     assert (statuses_at(net, [-11, 11, 0, 0], [0, 0, -8, 8]) == NodeStatus.OFF_MOULD).all()
-    assert meshdrape.measure(net).n_cells == 20 * 14
+    touching = meshdrape.measure(net).cell_touches_mould.astype(float)
+    assert (cells_at(net, touching, i[:-1, :-1], j[:-1, :-1]) == 1).all()
 
 
 @pytest.mark.parametrize("degrees", [0, 90])
@@ -168,10 +169,6 @@ CONCAVE = {
     "U": (lambda x, y: (np.abs(x) > 40) | (y < -40), [(-70, 50), (70, 31), (3, -71)]),
     "T": (lambda x, y: (np.abs(x) < 30) | (y > 50), [(0, -70), (-80, 80)]),
     "comb": (lambda x, y: (y < -60) | (np.abs(np.mod(x + 10, 40) - 20) > 10), [(-90, 50), (3, -81)]),
-    "spiral": (
-        lambda x, y: (y < -60) | (x > 60) | ((y > 60) & (x > -60)) | ((np.abs(x + 40) < 20) & (y > -20)),
-        [(-90, -90), (-40, 0)],
-    ),
 }  # fmt: skip
 
 
@@ -253,7 +250,7 @@ def test_developable_mould_keeps_unsheared_past_its_border():
 
 
 @pytest.mark.parametrize(("mesh", "seed", "direction"), [
-    (hypar(1.0, 1.0, 40), (-1000, -1000, 1000), (1, 0, -1)), (cap(4), (200, 100, 970), (1, 0, 0)),
+    (hypar(1.0, 0.4, 40), (-400, -400, 160), (1, 0, -0.4)), (cap(4), (200, 100, 970), (1, 0, 0)),
     (bumpy(0), (-100, -100, 0), (1, 0.01, 0)), (bumpy(5), (-100, 3, 0), (0, 1, 0)),
 ])  # fmt: skip
 def test_doubly_curved_mould_is_covered_from_its_corner(mesh, seed, direction):
