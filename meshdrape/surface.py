@@ -111,6 +111,27 @@ class Surface:
         return np.asarray(0.5 * np.linalg.norm(np.cross(u, v), axis=1))
 
     @cached_property
+    def area(self) -> float:
+        """Area of all faces, mm2."""
+        return float(self.face_area.sum())
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Diagonal of the bounding box, mm."""
+        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    @cached_property
+    def face_diameter(self) -> FloatArray:
+        """Longest edge of each face, (m,), mm."""
+        x1, x2, y2 = self.unfolding.corner.T
+        return np.asarray(np.maximum(x1, np.maximum(np.hypot(x2, y2), np.hypot(x2 - x1, y2))))
+
+    @cached_property
+    def longest_edge(self) -> float:
+        """Length of the longest edge, mm."""
+        return float(self.face_diameter.max())
+
+    @cached_property
     def corner_angle(self) -> FloatArray:
         """Angle of each face at each of its corners, (m, 3), rad."""
         angles = np.empty((len(self.faces), 3))
@@ -221,11 +242,23 @@ class Surface:
     def closest_point(self, position: ArrayLike) -> tuple[SurfacePoint, float]:
         """The point of the surface nearest to `position` (3,), and its distance, mm. O(n_faces)."""
         p = np.asarray(position, dtype=np.float64)
-        weights = _closest_on_triangles(p, *(self.vertices[self.faces[:, k]] for k in range(3)))
-        found = np.einsum("mk,mkd->md", weights, self.vertices[self.faces])
+        centre, radius = self._face_balls
+        away = np.linalg.norm(centre - p, axis=1)
+        # a face farther off than another's farthest point cannot be the nearest
+        near = np.flatnonzero(away - radius <= (away + radius).min())
+        faces = self.faces[near]
+        weights = _closest_on_triangles(p, *(self.vertices[faces[:, k]] for k in range(3)))
+        found = np.einsum("mk,mkd->md", weights, self.vertices[faces])
         distance = np.linalg.norm(found - p, axis=1)
-        face = int(np.argmin(distance))
-        return SurfacePoint(face, weights[face]), float(distance[face])
+        best = int(np.argmin(distance))
+        return SurfacePoint(int(near[best]), weights[best]), float(distance[best])
+
+    @cached_property
+    def _face_balls(self) -> tuple[FloatArray, FloatArray]:
+        """Centres (m, 3) and radii (m,) of balls about the faces' centroids that hold them, mm."""
+        corners = self.vertices[self.faces]
+        centre = corners.mean(axis=1)
+        return centre, np.asarray(np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1))
 
 
 def _neighbours(faces: IntArray, n_vertices: int) -> IntArray:

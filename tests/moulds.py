@@ -1,4 +1,4 @@
-"""Moulds whose geometry is known exactly, built in memory. Lengths in mm, angles in rad; normals point up or outward."""
+"""Moulds whose geometry is known exactly, built in memory. Lengths in mm, angles in rad; normals up or outward."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def rotation(axis: ArrayLike, angle: float) -> FloatArray:
 
 
 def grid_triangles(n: int, m: int) -> IntArray:
-    """Two triangles for each cell of an (n + 1, m + 1) grid of vertices, about the normal of rows crossed with columns."""
+    """Two triangles for each of n x m cells of a grid of vertices, about the normal of rows crossed with columns."""
     i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
     a = i * (m + 1) + j
     b, c, d = a + m + 1, a + m + 2, a + 1
@@ -103,7 +103,9 @@ def holed_plate(size: float = 200.0, hole: float = 60.0) -> Mesh:
     return cut_plate(lambda x, y: np.maximum(np.abs(x - 25), np.abs(y - 5)) > hole / 2, size, 40)
 
 
-def parallelogram(length: float = 300.0, width: float = 100.0, sweep: float = 1.0, cells: tuple[int, int] = (12, 5)) -> Mesh:
+def parallelogram(
+    length: float = 300.0, width: float = 100.0, sweep: float = 1.0, cells: tuple[int, int] = (12, 5)
+) -> Mesh:
     """A swept plate: x from the line x = sweep y, length long, |y| <= width / 2."""
     return grid(
         np.linspace(-length / 2, length / 2, cells[0] + 1),
@@ -130,7 +132,7 @@ def triangle_plate(corners: ArrayLike = ((0.0, 0.0), (300.0, 0.0), (60.0, 200.0)
 
 
 def sliver_plate(length: float = 200.0, width: float = 140.0) -> Mesh:
-    """A rectangle of CAD's worst triangles: a fan of needles about one corner, and strips a thousand times longer than wide."""
+    """A rectangle of strips and needles, up to thousands of times longer than wide."""
     y = np.sort(np.concatenate([np.linspace(-width / 2, width / 2, 8), [0.05, 0.1, 0.15, -31.0, -30.9]]))
     x = np.sort(np.concatenate([np.linspace(-length / 2, length / 2, 3), [0.02, 0.2, 17.0, 17.1]]))
     return grid(x, y, lambda x, y: (x, y, 0))
@@ -139,7 +141,12 @@ def sliver_plate(length: float = 200.0, width: float = 140.0) -> Mesh:
 # --- developable ----------------------------------------------------------------------------------------------------
 
 
-def cylinder(radius: float = 500.0, azimuth: tuple[float, float] = (-1.6, 2.0), half_length: float = 900.0, n: int = 300) -> Mesh:
+def cylinder(
+    radius: float = 500.0,
+    azimuth: tuple[float, float] = (-1.6, 2.0),
+    half_length: float = 900.0,
+    n: int = 300,
+) -> Mesh:
     """Facets along the rulings of a cylinder about z, so a prism; normals away from the axis."""
     return grid(
         np.linspace(*azimuth, n + 1),
@@ -152,7 +159,9 @@ def tube(radius: float = 60.0, length: float = 200.0, n: int = 24, rings: int = 
     """A prism closed about z, open at both ends: the net meets itself on it."""
     azimuth = np.linspace(0, 2 * np.pi, n + 1)
     return grid(
-        azimuth, np.linspace(-length / 2, length / 2, rings + 1), lambda p, z: (radius * np.cos(p), radius * np.sin(p), z)
+        azimuth,
+        np.linspace(-length / 2, length / 2, rings + 1),
+        lambda p, z: (radius * np.cos(p), radius * np.sin(p), z),
     ).welded()
 
 
@@ -162,7 +171,7 @@ def cone(
     azimuth: tuple[float, float] = (-1.6, 2.6),
     n: int = 300,
 ) -> Mesh:
-    """Facets along the rulings of a cone with its apex (left out) at the origin, about z; normals away from the axis."""
+    """Facets along the rulings of a cone about z, its apex (left out) at the origin; normals away from the axis."""
     s, c = np.sin(half_angle), np.cos(half_angle)
     return grid(
         np.linspace(*azimuth, n + 1),
@@ -191,8 +200,9 @@ def wing_spar(wing: Profile, spar: Profile, y: ArrayLike, chord: float, height: 
 def icosphere(level: int = 4, radius: float = 1000.0) -> Mesh:
     """A sphere of 20 x 4^level triangles about the origin, turned so that no symmetry of it meets a coordinate axis."""
     phi = (1 + 5**0.5) / 2
-    vertices = np.array([[-1, phi, 0], [1, phi, 0], [-1, -phi, 0], [1, -phi, 0], [0, -1, phi], [0, 1, phi],
-                         [0, -1, -phi], [0, 1, -phi], [phi, 0, -1], [phi, 0, 1], [-phi, 0, -1], [-phi, 0, 1]])  # fmt: skip
+    # three golden rectangles
+    vertices = np.array([[-1, phi, 0], [1, phi, 0], [-1, -phi, 0], [1, -phi, 0]])
+    vertices = np.concatenate([vertices, vertices[:, [2, 0, 1]], vertices[:, [1, 2, 0]]])
     triangles = np.array([[0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9], [5, 11, 4],
                           [11, 10, 2], [10, 7, 6], [7, 1, 8], [3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9],
                           [4, 9, 5], [2, 4, 11], [6, 2, 10], [8, 6, 7], [9, 8, 1]])  # fmt: skip
@@ -216,9 +226,10 @@ def cap(level: int = 4, radius: float = 1000.0, depth: float = 0.25) -> Mesh:
 
 
 def hypar(k: float = 1.0, half: float = 1.3, n: int = 80, scale: float = 1000.0, symmetric: bool = False) -> Mesh:
-    """z = k x y in units of `scale` mm over |x|, |y| <= half; n cells a side, so that for even n vertices lie on both axes.
+    """z = k x y in units of `scale` mm over |x|, |y| <= half; n cells a side.
 
-    The diagonals all run one way, or, for even n, away from the middle, which keeps the surface's symmetry.
+    For even n vertices lie on both axes. The diagonals all run one way, or, for even n, away from the middle, which
+    keeps the surface's symmetry.
     """
     side = np.linspace(-half, half, n + 1)
     mesh = grid(side, side, lambda x, y: (scale * x, scale * y, scale * k * x * y))

@@ -63,7 +63,10 @@ def sphere_net(radius: float, spacing: float, n: int) -> FloatArray:
 
 
 def chebyshev_net(
-    christoffel: Callable[[FloatArray], FloatArray], warp: FloatArray, weft: FloatArray, metric: Callable[[FloatArray], FloatArray]
+    christoffel: Callable[[FloatArray], FloatArray],
+    warp: FloatArray,
+    weft: FloatArray,
+    metric: Callable[[FloatArray], FloatArray],
 ) -> tuple[FloatArray, FloatArray]:
     """Smooth net in parameter space from its generators, (n + 1, n + 1, 2), and the warp-weft angle at its nodes.
 
@@ -123,9 +126,7 @@ def hypar_net(k: float, length: float, n: int) -> tuple[FloatArray, FloatArray]:
         return np.eye(2) + np.outer(slope, slope)
 
     t = np.linspace(0, length, 2 * n + 1)
-    node, angle = chebyshev_net(
-        christoffel, np.stack([t, 0 * t], axis=1), np.stack([0 * t, t], axis=1), metric
-    )
+    node, angle = chebyshev_net(christoffel, np.stack([t, 0 * t], axis=1), np.stack([0 * t, t], axis=1), metric)
     x, y = node[..., 0], node[..., 1]
     return np.stack([x, y, k * x * y], axis=-1), angle
 

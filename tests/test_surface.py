@@ -5,17 +5,37 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from moulds import (
-    Mesh, bumpy, cap, cube, cube_corner, cylinder, grid, holed_plate, icosphere, plate, sliver_plate, step_corner, tube,
-)  # fmt: skip
+    bumpy,
+    cap,
+    cube,
+    cube_corner,
+    cylinder,
+    grid,
+    holed_plate,
+    icosphere,
+    plate,
+    sliver_plate,
+    step_corner,
+    tube,
+)
 
 from meshdrape.errors import MouldError
 from meshdrape.surface import Surface, SurfacePoint
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 ALL = {
-    "plate": plate(), "holed": holed_plate(), "slivers": sliver_plate(), "cylinder": cylinder(n=20), "tube": tube(),
-    "cap": cap(3), "sphere": icosphere(2), "bumpy": bumpy(3), "cube": cube(), "corner": cube_corner(), "step": step_corner(),
-}  # fmt: skip
+    "plate": plate(),
+    "holed": holed_plate(),
+    "slivers": sliver_plate(),
+    "cylinder": cylinder(n=20),
+    "tube": tube(),
+    "cap": cap(3),
+    "sphere": icosphere(2),
+    "bumpy": bumpy(3),
+    "cube": cube(),
+    "corner": cube_corner(),
+    "step": step_corner(),
+}
 
 
 @pytest.fixture(params=ALL)
@@ -98,7 +118,13 @@ def test_unfolding_carries_the_common_edge_onto_itself(surface):
 def test_frames_put_corners_in_space(surface):
     mesh = surface.unfolding
     frame = mesh.frame
-    for k, xy in enumerate([np.zeros((len(frame), 2)), np.stack([mesh.corner[:, 0], 0 * mesh.corner[:, 0]], 1), mesh.corner[:, 1:]]):
+    for k, xy in enumerate(
+        [
+            np.zeros((len(frame), 2)),
+            np.stack([mesh.corner[:, 0], 0 * mesh.corner[:, 0]], 1),
+            mesh.corner[:, 1:],
+        ]
+    ):
         place = frame[:, :3] + xy[:, :1] * frame[:, 3:6] + xy[:, 1:] * frame[:, 6:9]
         assert place == pytest.approx(surface.vertices[surface.faces[:, k]], abs=1e-9)
     assert np.cross(frame[:, 3:6], frame[:, 6:9]) == pytest.approx(surface.face_normal, abs=1e-12)
@@ -129,9 +155,15 @@ def test_closest_point_is_closer_than_any_other(position, seed):
     assert distance <= np.linalg.norm(samples - position, axis=-1).min() + 1e-9
 
 
-@pytest.mark.parametrize(("position", "nearest"), [
-    ((3, 4, 10), (3, 4, 0)), ((500, 4, 0), (100, 4, 0)), ((500, 600, -7), (100, 70, 0)), ((-100, -70, 1), (-100, -70, 0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("position", "nearest"),
+    [
+        ((3, 4, 10), (3, 4, 0)),
+        ((500, 4, 0), (100, 4, 0)),
+        ((500, 600, -7), (100, 70, 0)),
+        ((-100, -70, 1), (-100, -70, 0)),
+    ],
+)
 def test_closest_point_of_a_plate(position, nearest):
     surface = Surface.from_arrays(*plate())
     point, distance = surface.closest_point(position)
@@ -148,7 +180,7 @@ def test_closest_point_on_needles():
 
 
 def test_components():
-    parts = plate().joined(Mesh(icosphere(1, 20).vertices + [0, 0, 300], icosphere(1).triangles))
+    parts = plate().joined(icosphere(1, 20).moved(np.eye(3), (0, 0, 300)))
     surface = Surface.from_arrays(*parts)
     assert surface.n_components == 2
     assert np.bincount(surface.face_component).tolist() == [126, 80]
@@ -176,10 +208,13 @@ def test_areas_and_normals():
     assert np.einsum("ij,ij->i", ball.face_normal, centre).min() > 0
 
 
-@pytest.mark.parametrize(("triangles", "words"), [
-    ([[0, 1, 2], [0, 1, 3]], "vertices 0 and 1"),  # two triangles run the edge the same way
-    ([[0, 1, 2], [1, 0, 3], [1, 0, 4]], "vertices 1 and 0"),  # three triangles on one edge
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("triangles", "words"),
+    [
+        ([[0, 1, 2], [0, 1, 3]], "vertices 0 and 1"),  # two triangles run the edge the same way
+        ([[0, 1, 2], [1, 0, 3], [1, 0, 4]], "vertices 1 and 0"),  # three triangles on one edge
+    ],
+)
 def test_edges_that_cannot_be_walked_over(triangles, words):
     vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0], [0, -1, 1]]
     with pytest.raises(MouldError, match=words) as caught:

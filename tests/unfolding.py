@@ -13,7 +13,7 @@ FloatArray = NDArray[np.float64]
 
 
 class StraightLine(NamedTuple):
-    """The shortest straight line found: its length, unit direction (3,) where it starts, and crossings in space (k, 3)."""
+    """A straight line: its length, its unit direction (3,) where it starts, its crossings in space (k, 3)."""
 
     length: float
     direction: FloatArray
@@ -23,7 +23,7 @@ class StraightLine(NamedTuple):
 def straight_line(
     surface: Surface, face: int, start: FloatArray, target_face: int, target: FloatArray, reach: float
 ) -> StraightLine | None:
-    """The shortest straight line from `start` in `face` to `target` in `target_face`; None if none is within `reach`, mm.
+    """The shortest straight line from `start` in `face` to `target` in `target_face`; none: None.
 
     From the start the eye looks out over the edges of its face; behind each it lays the next triangle flat into the
     same plane, and looks on through what it sees of that one's edges.
@@ -34,7 +34,14 @@ def straight_line(
     weights = _barycentric(surface, target_face, target)
     found: list[StraightLine] = []
 
-    def look(f: int, flat: FloatArray, gates: list[tuple[int, int]], laid: list[FloatArray], right: FloatArray, left: FloatArray) -> None:
+    def look(
+        f: int,
+        flat: FloatArray,
+        gates: list[tuple[int, int]],
+        laid: list[FloatArray],
+        right: FloatArray,
+        left: FloatArray,
+    ) -> None:
         """Lay out what is behind face f, its corners at `flat` (3, 2) as seen from the start, between two rays."""
         if f == target_face:
             end = weights @ flat
@@ -48,7 +55,14 @@ def straight_line(
                 continue
             low, high = (a if _turn(right, a) > 0 else right), (b if _turn(b, left) > 0 else left)
             if _turn(low, high) > 0:
-                look(code // 3, _laid(surface, code, b, a), [*gates, (f, k)], [*laid, np.stack([a, b])], low, high)
+                look(
+                    code // 3,
+                    _laid(surface, code, b, a),
+                    [*gates, (f, k)],
+                    [*laid, np.stack([a, b])],
+                    low,
+                    high,
+                )
 
     flat = np.stack([(corners - start) @ u, (corners - start) @ v], axis=1)
     if face == target_face:
@@ -90,7 +104,12 @@ def _laid(surface: Surface, code: int, tail: FloatArray, head: FloatArray) -> Fl
 
 
 def _line(
-    surface: Surface, end: FloatArray, gates: list[tuple[int, int]], laid: list[FloatArray], u: FloatArray, v: FloatArray
+    surface: Surface,
+    end: FloatArray,
+    gates: list[tuple[int, int]],
+    laid: list[FloatArray],
+    u: FloatArray,
+    v: FloatArray,
 ) -> StraightLine:
     length = float(np.hypot(*end))
     crossings = []

@@ -67,7 +67,7 @@ def _facts(found: Inspection) -> dict[str, Any]:
 
         facts |= {
             "size_mm": mould.size.tolist(),
-            "area_mm2": float(mould.surface.face_area.sum()),
+            "area_mm2": mould.surface.area,
             "triangles": len(mould.triangles),
             "chord_tolerance_mm": mould.chord_tolerance,
             "angle_tolerance_deg": None if mould.angle_tolerance is None else math.degrees(mould.angle_tolerance),
@@ -88,7 +88,8 @@ def _report(facts: dict[str, Any]) -> str:
         lines.append(f"  mesh noise  {facts['mesh_noise_deg']:.3f} deg of shear")
     lines += [f"  note        {note}" for note in facts["notes"]]
     lines += [
-        f"  FAULT       {fault['count']} x {fault['kind']}, first at " + ", ".join(f"{v:.6g}" for v in fault["first_at"])
+        f"  FAULT       {fault['count']} x {fault['kind']}, first at "
+        + ", ".join(f"{v:.6g}" for v in fault["first_at"])
         for fault in facts["faults"]
     ]
     if facts["faces"]:

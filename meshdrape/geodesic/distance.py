@@ -95,7 +95,7 @@ def surface_distance(
         A length the distance is not expected to exceed, mm.
     """
     chord = float(np.linalg.norm(a.position(surface) - b.position(surface)))
-    size = float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
+    size = surface.diagonal
     reach = max(bound or 0.0, 1.1 * chord, 1e-9 * size)
     while True:
         faces = faces_between(surface, a, b, reach)

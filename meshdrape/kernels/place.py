@@ -12,8 +12,10 @@ FOLDED = 3
 NOT_CONVERGED = 7
 
 MAX_ITERATIONS = 40
-# From here on steps are halved: a path that jumps from one side of a vertex to the other and back is caught between.
-DAMPED_FROM = 12
+# From here on the two paths are turned in alternation: both at once may jump from side to side of a vertex for ever.
+ALTERNATE_FROM = 5
+# And from here on by half: a path that jumps to and fro by itself is caught between.
+DAMPED_FROM = 24
 # Warp and weft closer than one degree to parallel are taken as folded.
 FOLD_COSINE = math.cos(math.radians(1.0))
 
@@ -102,6 +104,13 @@ def place(plane, neighbour, frame, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, w
         if iterations > DAMPED_FROM:
             ca += 1.0
             cb += 1.0
+        if iterations > ALTERNATE_FROM:
+            if iterations % 2 == 0:
+                ca = 1.0
+                sa = 0.0
+            else:
+                cb = 1.0
+                sb = 0.0
         size = math.sqrt(ca * ca + sa * sa)
         ca /= size
         sa /= size

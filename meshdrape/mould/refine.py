@@ -14,7 +14,6 @@ from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances
 # The image of an edge on its face may lie beside its chord by this much in the metric.
 MOST_DRIFT: Final = 0.1
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
-TILTED: Final = 1.01  # size of the longest edge of a facet that tilts too far
 SIZE_CLASS: Final = 1.25
 MOST_TRIANGLES: Final = 2_000_000
 
@@ -68,7 +67,7 @@ def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools
         size[here] = _length_from_pole(nodes, pole[here], other[here])
     plain = ~flat & ~pole_a & ~pole_b
     size[plain] = _plain_size(nodes, a[plain], b[plain], tolerances.chord)
-    return np.where(_tilting(facets, tolerances.chord)[edge], np.maximum(size, TILTED), size)
+    return size
 
 
 def _plain_size(nodes: Nodes, a: Ints, b: Ints, chord_tolerance: float) -> Floats:
@@ -82,19 +81,6 @@ def _plain_size(nodes: Nodes, a: Ints, b: Ints, chord_tolerance: float) -> Float
     gap = np.abs(np.einsum("ki,ki->k", bulge, normal))
     drift = _length(metric, _in_parameters(tangent, bulge))
     return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / MOST_DRIFT))))
-
-
-def _tilting(facets: Facets, chord_tolerance: float) -> Bools:
-    """Whether a half-edge is the lower one of the longest inner edge of a facet that tilts too far, (3 t,)."""
-    corners = facets.nodes.position[facets.triangles]
-    length = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    length[facets.twin.reshape(-1, 3) < 0] = 0.0
-    longest = 3 * np.arange(len(length)) + length.argmax(axis=1)
-    # what is smaller than the gap there may be anyway is left as it is
-    tilts = (facets.tilt(*facets.triangles.T) > 1.0) & (length.max(axis=1) > chord_tolerance)
-    found = np.zeros(len(facets.twin), dtype=bool)
-    found[np.minimum(longest, facets.twin[longest])[tilts]] = True
-    return found
 
 
 def _length_from_pole(nodes: Nodes, pole: Ints, other: Ints) -> Floats:

@@ -79,18 +79,30 @@ def read_brep(path: Path) -> NamedShape:
         If it is no BREP file or holds no faces.
     """
     cq = cadquery_module()
-    with path.open("rb") as file:
-        head = file.read(200)
-    if b"DBRep_DrawableShape" not in head and b"CASCADE Topology" not in head:
+    content = path.read_bytes()
+    if b"CASCADE Topology" not in content[:200]:
         msg = f"{path} is not a BREP file of Open CASCADE; export it anew, or as STEP"
+        raise FileError(msg)
+    if not _is_whole(content):
+        msg = f"{path} is cut short; export it anew"
         raise FileError(msg)
     try:
         with quiet():
             whole = cq.Shape.importBrep(str(path))
     except Exception as error:
-        msg = f"{path} cannot be read as BREP ({type(error).__name__}), perhaps it is cut short; export it anew"
+        msg = f"{path} cannot be read as BREP ({type(error).__name__}); export it anew"
         raise FileError(msg) from error
     return of_shape(whole, path)
+
+
+def _is_whole(brep: bytes) -> bool:
+    """Whether a BREP file goes on to its end; Open CASCADE crashes on one that does not.
+
+    The last section counts its shapes, each of which ends in a star, and then names the one that is all of it by
+    two numbers.
+    """
+    words = brep.partition(b"\nTShapes ")[2].split()
+    return len(words) > 3 and words[0] == b"%d" % words.count(b"*") and words[-3] == b"*"
 
 
 def of_shape(whole: Any, origin: Path) -> NamedShape:

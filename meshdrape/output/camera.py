@@ -159,12 +159,8 @@ def _is_down(up: FloatArray) -> bool:
     return False
 
 
-def _tilted(
-    face_on: FloatArray, along: FloatArray, across: FloatArray, turn: float, tilt: float
-) -> FloatArray:
+def _tilted(face_on: FloatArray, along: FloatArray, across: FloatArray, turn: float, tilt: float) -> FloatArray:
     """Return the axes after a turn of the object about its normal and a tilt of its upper edge away."""
     right = np.cos(turn) * along - np.sin(turn) * across
     up = np.sin(turn) * along + np.cos(turn) * across
-    return np.stack(
-        [right, np.cos(tilt) * up + np.sin(tilt) * face_on, np.cos(tilt) * face_on - np.sin(tilt) * up]
-    )
+    return np.stack([right, np.cos(tilt) * up + np.sin(tilt) * face_on, np.cos(tilt) * face_on - np.sin(tilt) * up])

@@ -186,9 +186,7 @@ def _whole(has_position: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return along_warp[:, :-1] & along_warp[:, 1:]
 
 
-def _node_rows(
-    element: Element, net: Net, measures: Measures, has_position: NDArray[np.bool_], start: int
-) -> Rows:
+def _node_rows(element: Element, net: Net, measures: Measures, has_position: NDArray[np.bool_], start: int) -> Rows:
     end = start + len(has_position)
     i, j = np.nonzero(has_position)
     rows = element.rows(len(i))

@@ -150,9 +150,7 @@ def _map_elements(path: str | os.PathLike[str], file: BinaryIO, header: _Header)
     return elements
 
 
-def _row(
-    path: str | os.PathLike[str], file: BinaryIO, start: int, element: _Element, byte_order: str
-) -> np.dtype[Any]:
+def _row(path: str | os.PathLike[str], file: BinaryIO, start: int, element: _Element, byte_order: str) -> np.dtype[Any]:
     """Return the dtype of an element's rows, the lengths of its lists taken from the first row."""
     fields: list[tuple[Any, ...]] = []
     for name, (code, length_code) in element.properties.items():

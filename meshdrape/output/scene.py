@@ -81,14 +81,10 @@ def drawn_cells(net: Net, measures: Measures, most: int = _MOST_QUADS) -> DrawnC
         corners.append(np.stack([points[0, j0], points[-1, j0], points[-1, j1], points[0, j1]], axis=1))
         values.append(worst[row, full[row]])
         i, j = np.nonzero(alone[i0:i1])
-        corners.append(
-            np.stack([points[i, j], points[i + 1, j], points[i + 1, j + 1], points[i, j + 1]], axis=1)
-        )
+        corners.append(np.stack([points[i, j], points[i + 1, j], points[i + 1, j + 1], points[i, j + 1]], axis=1))
         values.append(shear[i0 + i, j])
     drawn = np.concatenate([*values, np.empty(0)])
-    return DrawnCells(
-        np.concatenate([*corners, np.empty((0, 4, 3))]), np.where(drawn < 0, np.nan, drawn), block
-    )
+    return DrawnCells(np.concatenate([*corners, np.empty((0, 4, 3))]), np.where(drawn < 0, np.nan, drawn), block)
 
 
 def drawn_fibres(net: Net, gap: float, block: int) -> tuple[FloatArray, FloatArray, tuple[int, int]]:

@@ -78,7 +78,7 @@ def drape(
         msg = f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}"
         raise StartError(msg)
     longest = max(fabric.warp_spacing, fabric.weft_spacing)
-    size = float(np.linalg.norm(mould.size))
+    size = mould.surface.diagonal
     if longest > size:
         msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
         raise FabricError(msg)

@@ -80,7 +80,7 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
         raise StartError(msg)
     axis = axis / np.linalg.norm(axis)
     mould, mesh, fabric = net.mould, net.surface.unfolding, net.fabric
-    total = float(mould.surface.face_area.sum())
+    total = mould.surface.area
     # triangles of the net's own size, unless that is too many: halving leaves about two in three of this area
     longest = max(1.5 * max(fabric.warp_spacing, fabric.weft_spacing), float(np.sqrt(6.0 * total / most_triangles)))
     vertices, triangles, parent = refined(mould.vertices, mould.triangles, longest, most_triangles)

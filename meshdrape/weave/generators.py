@@ -34,7 +34,7 @@ def generator_counts(surface: Surface, fabric: Fabric, extent: Extent | None) ->
     Bounded by the cloth's extent (warp-, warp+, weft-, weft+ from the seed, mm), else by pi times the diagonal of the
     bounding box: more than once round any convex mould.
     """
-    reach = np.pi * float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
+    reach = float(np.pi) * surface.diagonal
     lengths = [reach] * 4
     if extent is not None:
         lengths = [min(reach, extent[k]) for k in (1, 3, 0, 2)]

@@ -76,11 +76,11 @@ def lay(
         If the net would not fit in the memory.
     """
     longest = max(fabric.warp_spacing, fabric.weft_spacing)
-    surface = extended(part, COLLAR_DEPTH * longest)
+    surface = _with_collar(part, COLLAR_DEPTH * longest)
     star = seed_star(surface, point, direction, fabric.initial_angle)
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
-    cells = float(part.face_area.sum()) / (fabric.warp_spacing * fabric.weft_spacing)
+    cells = part.area / (fabric.warp_spacing * fabric.weft_spacing)
     reach = None
     if cells > SCOUT_FROM:
         check_memory(int(cells), 1, fabric, memory)
@@ -96,6 +96,20 @@ def lay(
         if not any(grow):
             return Laid(surface, lattice, start, settled)
         lattice, start = _grown(lattice, start, grow, fabric, memory)
+
+
+def _with_collar(part: Surface, depth: float) -> Surface:
+    """The surface with a collar of at least this depth, the last one made kept with the surface for the next drape.
+
+    Depths are rounded up to powers of two, so that drapes of like spacing share one and a net does not depend on
+    what was draped before.
+    """
+    depth = 2.0 ** np.ceil(np.log2(depth))
+    kept: dict[float, Surface] = vars(part).setdefault("_collar", {})
+    if depth not in kept:
+        kept.clear()
+        kept[depth] = extended(part, float(depth))
+    return kept[depth]
 
 
 def _reach(laid: Laid, fabric: Fabric) -> Extent:

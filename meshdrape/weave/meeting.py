@@ -36,9 +36,8 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
         return 0
     mesh = surface.unfolding
     spacing = min(fabric.warp_spacing, fabric.weft_spacing)
-    x1, x2, y2 = mesh.corner.T
-    diameter = np.maximum(x1, np.maximum(np.hypot(x2, y2), np.hypot(x2 - x1, y2)))
-    small = bool((diameter[: len(mould.faces)] < SMALL_FACE * spacing).all())
+    diameter = surface.face_diameter
+    small = mould.longest_edge < SMALL_FACE * spacing
     window = np.empty((len(diameter), 4), dtype=np.int64)
     # collar faces reach far out; on them windows say nothing
     measured = np.where(np.arange(len(diameter)) < len(mould.faces), diameter, np.inf)

@@ -33,8 +33,8 @@ class _Tile:
 
 def gap_tolerance(surface: Surface, fabric: Fabric) -> float:
     """Largest gap left between the ends of a node's two edges, mm: the round-off of places on the largest face."""
-    largest = float(np.abs(surface.unfolding.corner).max())
-    return 1e-11 * min(fabric.warp_spacing, fabric.weft_spacing) + 32 * np.finfo(float).eps * largest
+    round_off = 32 * float(np.finfo(float).eps) * surface.longest_edge
+    return 1e-11 * min(fabric.warp_spacing, fabric.weft_spacing) + round_off
 
 
 def fill(

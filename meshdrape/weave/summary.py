@@ -63,7 +63,7 @@ def summarise(
             "sha256": mould.sha256,
             "unit": mould.unit,
             "size_mm": np.round(mould.size, 6).tolist(),
-            "area_mm2": float(mould.surface.face_area.sum()),
+            "area_mm2": mould.surface.area,
             "triangles": len(mould.triangles),
             "vertices": len(mould.vertices),
             "chord_tolerance_mm": mould.chord_tolerance,

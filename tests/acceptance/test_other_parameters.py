@@ -11,7 +11,15 @@ import pytest
 from creased import facets, lay
 from lattice import cells_at, nodes_at, offsets, shear_deg
 from moulds import cone, cube_corner, cylinder, hypar, icosphere, rotation, wing_spar
-from references import Crease, CreaseNet, cube_corner_net, hypar_net, rolled_on_cone, rolled_on_cylinder, sphere_net
+from references import (
+    Crease,
+    CreaseNet,
+    cube_corner_net,
+    hypar_net,
+    rolled_on_cone,
+    rolled_on_cylinder,
+    sphere_net,
+)
 
 import meshdrape
 
@@ -40,10 +48,22 @@ def _square(degrees):
 # wing and spar as (g, g') of each, gamma = psi(0) of itself; spacing, m
 WINGS = {
     "gentler": (lambda y: 0.15 * y**2, lambda y: 0.3 * y, lambda y: 0.3 * y**2, lambda y: 0.6 * y, 0.04),
-    "wing bends more than spar": (lambda y: 0.4 * y**2, lambda y: 0.8 * y, lambda y: 0.1 * y**2, lambda y: 0.2 * y, 0.05),
+    "wing bends more than spar": (
+        lambda y: 0.4 * y**2,
+        lambda y: 0.8 * y,
+        lambda y: 0.1 * y**2,
+        lambda y: 0.2 * y,
+        0.05,
+    ),
     "flat wing": (lambda y: 0 * y, lambda y: 0 * y, lambda y: 0.3 * y**2, lambda y: 0.6 * y, 0.03),
     "cubic spar": (lambda y: 0.2 * y**2, lambda y: 0.4 * y, lambda y: 0.3 * y**3, lambda y: 0.9 * y**2, 0.05),
-    "tilted": (lambda y: 0.3 * y, lambda y: 0.3 + 0 * y, lambda y: 0.1 * y + 0.3 * y**2, lambda y: 0.1 + 0.6 * y, 0.05),
+    "tilted": (
+        lambda y: 0.3 * y,
+        lambda y: 0.3 + 0 * y,
+        lambda y: 0.1 * y + 0.3 * y**2,
+        lambda y: 0.1 + 0.6 * y,
+        0.05,
+    ),
 }
 
 
@@ -53,7 +73,9 @@ def test_fold(name):
     crease = Crease((wing, wing_slope), (spar, spar_slope), 1.2)
     n = int(crease.arc[0](1.0) / spacing) + 1
     edge = float(spar(np.float64(1.2)))
-    reference = CreaseNet(crease, spacing, n, -int(0.6 / spacing), int((0.6 + edge) / spacing) + 3, float(crease.psi(0.0)))
+    reference = CreaseNet(
+        crease, spacing, n, -int(0.6 / spacing), int((0.6 + edge) / spacing) + 3, float(crease.psi(0.0))
+    )
     width, kappa = 0.5e-3, 1.8
     h = kappa * width**2 / 8
     draped = lay(crease, reference, facets(1.2, width), edge + 0.3, 1.0, int(reference.x[-1] / spacing))
@@ -104,7 +126,11 @@ def test_sphere(radius, spacing, turn):
     n = int(0.9 * radius / spacing)
     reach = 1.05 * n * spacing
     net = meshdrape.drape(
-        mould, meshdrape.Fabric(spacing), turned @ [0, 0, radius], turned @ [1, 0, 0], extent=(0, reach, 0, reach)
+        mould,
+        meshdrape.Fabric(spacing),
+        turned @ [0, 0, radius],
+        turned @ [1, 0, 0],
+        extent=(0, reach, 0, reach),
     )
     i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
     off = np.linalg.norm(nodes_at(net, i, j) - sphere_net(radius, spacing, n) @ turned.T, axis=-1)
@@ -122,7 +148,10 @@ def test_hypar():
     assert cells_at(net, shear_deg(net), i[:-1, :-1], j[:-1, :-1]) == pytest.approx(cells, abs=0.1)
 
 
-@pytest.mark.parametrize(("half", "azimuth", "eta", "spacing"), [(15, 40, 10, (50, 50)), (45, 0, 63, (30, 55)), (70, -20, -35, (44, 44))])
+@pytest.mark.parametrize(
+    ("half", "azimuth", "eta", "spacing"),
+    [(15, 40, 10, (50, 50)), (45, 0, 63, (30, 55)), (70, -20, -35, (44, 44))],
+)
 def test_cone(half, azimuth, eta, spacing):
     half, azimuth, eta = np.radians([half, azimuth, eta])
     s, c = np.sin(half), np.cos(half)
@@ -136,7 +165,9 @@ def test_cone(half, azimuth, eta, spacing):
     _held(net, reference, 2e-2)
 
 
-@pytest.mark.parametrize(("radius", "eta", "spacing"), [(300.0, 62, (41, 41)), (1000.0, 20, (20, 60)), (150.0, -45, (30, 30))])
+@pytest.mark.parametrize(
+    ("radius", "eta", "spacing"), [(300.0, 62, (41, 41)), (1000.0, 20, (20, 60)), (150.0, -45, (30, 30))]
+)
 def test_cylinder(radius, eta, spacing):
     eta, azimuth = np.radians([eta, 25])
     across = np.array([-np.sin(azimuth), np.cos(azimuth), 0])
@@ -162,7 +193,9 @@ def _held(net, reference, tolerance):
     assert np.abs(shear_deg(net)[on_cells]).max() < 1e-6
 
 
-@pytest.mark.parametrize(("side", "spacing", "first"), [(1000.0, 61.0, 12.0), (400.0, 100.0, 44.0), (2000.0, 75.0, 80.0)])
+@pytest.mark.parametrize(
+    ("side", "spacing", "first"), [(1000.0, 61.0, 12.0), (400.0, 100.0, 44.0), (2000.0, 75.0, 80.0)]
+)
 def test_cube_corner(side, spacing, first):
     turn = np.radians(first)
     net = meshdrape.drape(

@@ -1,9 +1,9 @@
 """Drapes asked of meshdrape through its public names alone, held against nets computed without any mesh.
 
-`nets.npz` holds reference nodes in metres: closed forms on the sphere, the cone, the cylinder and the cube's corner; the
-unrolled wing and spar of section 3.4 of Barton et al., New Techniques for Composite Wing Manufacture; a high-precision
-solution of the Chebyshev net's equations on the hypar. None of them was made by this program. The wing's cells are
-tagged 1 where rows start on the left ribbon and 2 where they come from the wing.
+`nets.npz` holds reference nodes in metres: closed forms on the sphere, the cone, the cylinder and the cube's
+corner; the unrolled wing and spar of section 3.4 of Barton et al., New Techniques for Composite Wing Manufacture; a
+high-precision solution on the hypar. None of them was made by this program. The wing's cells are tagged 1 where rows
+start on the left ribbon and 2 where they come from the wing.
 """
 
 from pathlib import Path
@@ -21,7 +21,10 @@ REFERENCE = np.load(Path(__file__).with_name("nets.npz"))
 def drape(mesh: Mesh, spacing, seed, direction):
     """Lengths in metres but for the mesh."""
     return meshdrape.drape(
-        mesh.mould(), meshdrape.Fabric(spacing=spacing * METRE), seed=tuple(np.multiply(seed, METRE)), direction=direction
+        mesh.mould(),
+        meshdrape.Fabric(spacing=spacing * METRE),
+        seed=tuple(np.multiply(seed, METRE)),
+        direction=direction,
     )
 
 
@@ -88,7 +91,12 @@ def test_origami():
     def profile(t):
         return 0.3 * t**2 / METRE
 
-    net = drape(wing_spar(profile, profile, np.linspace(0, 1000, 301), 2000, 800), 0.03, (1.2, 0.5, 0.075), (0, 1, 0.3))
+    net = drape(
+        wing_spar(profile, profile, np.linspace(0, 1000, 301), 2000, 800),
+        0.03,
+        (1.2, 0.5, 0.075),
+        (0, 1, 0.3),
+    )
     shear = shear_deg(net)
     assert np.nanmax(shear) < 1e-4
     assert np.isfinite(shear).sum() > 1500

@@ -5,9 +5,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from moulds import (
-    Mesh, bumpy, cap, cube, cube_corner, cut_plate, cylinder, holed_plate, icosphere, plate, rotation, sliver_plate, step_corner,
+    Mesh,
+    bumpy,
+    cap,
+    cube,
+    cube_corner,
+    cut_plate,
+    cylinder,
+    holed_plate,
+    icosphere,
+    plate,
+    rotation,
+    sliver_plate,
+    step_corner,
     tube,
-)  # fmt: skip
+)
 from unfolding import straight_line
 
 import meshdrape
@@ -65,14 +77,17 @@ def test_on_a_tube_the_shorter_way_round():
 
 
 @pytest.mark.parametrize("side", [1.0, 250.0])
-@pytest.mark.parametrize(("a", "b", "expected"), [
-    ((0, 0, 0), (1, 1, 1), np.sqrt(5)),  # opposite corners
-    ((0, 0, 0), (1, 1, 0), np.sqrt(2)),
-    ((0.5, 0.5, 0), (0.5, 0.5, 1), 2.0),  # middles of opposite faces
-    ((0.5, 0, 0), (0.5, 1, 1), 2.0),  # middles of opposite edges
-    ((0.5, 0.5, 1), (1, 0.5, 0.5), 1.0),
-    ((0, 0, 0), (0.5, 0.5, 1), np.sqrt(0.25 + 2.25)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("a", "b", "expected"),
+    [
+        ((0, 0, 0), (1, 1, 1), np.sqrt(5)),  # opposite corners
+        ((0, 0, 0), (1, 1, 0), np.sqrt(2)),
+        ((0.5, 0.5, 0), (0.5, 0.5, 1), 2.0),  # middles of opposite faces
+        ((0.5, 0, 0), (0.5, 1, 1), 2.0),  # middles of opposite edges
+        ((0.5, 0.5, 1), (1, 0.5, 0.5), 1.0),
+        ((0, 0, 0), (0.5, 0.5, 1), np.sqrt(0.25 + 2.25)),
+    ],
+)
 def test_on_a_cube(side, a, b, expected):
     for n in (1, 3):
         found = distance(cube(side, n), side * np.array(a), side * np.array(b))
@@ -80,7 +95,7 @@ def test_on_a_cube(side, a, b, expected):
 
 
 def test_the_spider_and_the_fly():
-    """Dudeney's room, 30 x 12 x 12 feet: a foot below the ceiling to a foot above the floor at the other end, 40 feet."""
+    """Dudeney's room, 30 x 12 x 12 feet: a foot below the ceiling to a foot above the floor at the far end is 40."""
     room = cube(1.0, 5)
     room = Mesh(room.vertices * [12, 12, 30], room.triangles)
     assert distance(room, (6, 11, 0), (6, 1, 30)) == pytest.approx(40, rel=1e-12)
@@ -149,7 +164,9 @@ def _random_point(surface, rng):
     return SurfacePoint(face, rng.dirichlet([1, 1, 1])).position(surface)
 
 
-@pytest.mark.parametrize("mesh", [bumpy(11, n=12, height=60), icosphere(2, 100), cap(3, 100), cube(100, 2), step_corner(100, 2)])
+@pytest.mark.parametrize(
+    "mesh", [bumpy(11, n=12, height=60), icosphere(2, 100), cap(3, 100), cube(100, 2), step_corner(100, 2)]
+)
 def test_agrees_with_a_second_implementation(mesh):
     """pygeodesic on the whole mesh with the points inserted; ours cuts a patch out of it."""
     import pygeodesic.geodesic
@@ -182,8 +199,11 @@ def test_ends_at_vertices_and_edges(spot):
     surface = mesh.mould().surface
     face = 40
     weights = {
-        "vertex": [1, 0, 0], "edge": [0.4, 0.6, 0], "near vertex": [1 - 2e-9, 1e-9, 1e-9], "near edge": [0.4, 0.6 - 1e-10, 1e-10],
-    }.get(spot)  # fmt: skip
+        "vertex": [1, 0, 0],
+        "edge": [0.4, 0.6, 0],
+        "near vertex": [1 - 2e-9, 1e-9, 1e-9],
+        "near edge": [0.4, 0.6 - 1e-10, 1e-10],
+    }.get(spot)
     a = np.array([100.0, 3.0, 0]) if weights is None else np.array(weights) @ surface.vertices[surface.faces[face]]
     b = np.array([-61.0, 22.0, 0])
     assert distance(mesh, a, b) == pytest.approx(np.linalg.norm(a - b), abs=1e-6)
@@ -229,7 +249,7 @@ def test_points_that_are_none(point):
 
 
 def test_on_a_convex_mesh_it_is_the_shortest_straight_line():
-    """Shortest paths pass no convex vertex; every strip of triangles in sight is laid flat, with none of our kernels."""
+    """Shortest paths pass no convex vertex: all triangles in sight are laid flat, with none of our kernels."""
     mould = icosphere(2, 100).mould()
     rng = np.random.default_rng(2)
     for _ in range(12):

@@ -144,7 +144,9 @@ def test_corner_angles_are_the_triangles():
     surface = Surface.from_arrays(*bumpy(8, n=6))
     for face in range(len(surface.faces)):
         for k in range(3):
-            assert corner_angle(surface.unfolding, face, k)[0] == pytest.approx(surface.corner_angle[face, k], abs=1e-12)
+            assert corner_angle(surface.unfolding, face, k)[0] == pytest.approx(
+                surface.corner_angle[face, k], abs=1e-12
+            )
             x, y = corner_place(surface.unfolding, face, k)
             frame = surface.unfolding.frame[face]
             assert frame[:3] + x * frame[3:6] + y * frame[6:9] == pytest.approx(

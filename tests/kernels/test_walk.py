@@ -12,9 +12,15 @@ from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.collar import extended
 
 MESHES = {
-    "plate": plate(), "slivers": sliver_plate(), "bumpy": bumpy(5), "rough": bumpy(6, height=60), "sphere": icosphere(2, 100),
-    "cube": cube(100, 3), "step": step_corner(100, 2), "prism": cylinder(60, (0, 3), 80, 9),
-}  # fmt: skip
+    "plate": plate(),
+    "slivers": sliver_plate(),
+    "bumpy": bumpy(5),
+    "rough": bumpy(6, height=60),
+    "sphere": icosphere(2, 100),
+    "cube": cube(100, 3),
+    "step": step_corner(100, 2),
+    "prism": cylinder(60, (0, 3), 80, 9),
+}
 SURFACES = {name: Surface.from_arrays(*mesh) for name, mesh in MESHES.items()}
 
 starts = st.tuples(

@@ -52,7 +52,7 @@ def on_smooth(net, reference, extent):
 
 
 def test_nodes_of_the_cone_are_the_published_ones():
-    """Tolerance 2 h + (h / R) L: h chord tolerance, R largest radius, L distance from the seed. And the digits given."""
+    """Tolerance 2 h + (h / R) L: h chord tolerance, R radius, L distance from the seed; and the digits given."""
     net = drape_cone()
     h = 1900 * np.sin(HALF_ANGLE) * (4.2 / 2400) ** 2 / 8
     for (i, j), node in PUBLISHED_NODES.items():

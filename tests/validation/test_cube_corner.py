@@ -57,7 +57,11 @@ def test_whatever_the_mesh_and_the_spacing(spacing, n):
     turn = rotation([1, 2, -1], 1.1)
     mesh = cube_corner(n=n).moved(turn, shift=(50, -20, 10))
     net = meshdrape.drape(
-        mesh.mould(), meshdrape.Fabric(spacing), (50, -20, 10), turn @ direction_at(33.0), extent=(900, 900, 900, 900)
+        mesh.mould(),
+        meshdrape.Fabric(spacing),
+        (50, -20, 10),
+        turn @ direction_at(33.0),
+        extent=(900, 900, 900, 900),
     )
     shear = shear_deg(net)
     assert np.abs(np.abs(shear[np.isfinite(shear)]) - 22.5).max() < 1e-6

@@ -27,7 +27,7 @@ def test_equations_reproduce_the_published_corner(k):
 @pytest.mark.parametrize("n", [201, 200], ids=["fibres_across_triangles", "fibres_along_edges_through_vertices"])
 @pytest.mark.parametrize("k", SHEAR_AT_CORNER)
 def test_draped_hypar(k, n):
-    """Tolerances: nodes 3 h + 3 (h / R)^0.75 L, shear max 10 (h / R)^0.75 and rms 2 (h / R)^0.75 rad; in all four quadrants."""
+    """All four quadrants: nodes to 3 h + 3 (h / R)^0.75 L, shear to max 10 and rms 2 (h / R)^0.75 rad."""
     side, spacing = 2.6 / n, 0.05
     h, smallest_radius = k * side**2 / 4, 1 / k
     noise = (h / smallest_radius) ** 0.75

@@ -32,10 +32,17 @@ def wing_slope(y):
 DEVIATIONS = {
     "parabola": (lambda y: C * y**2 / 28, lambda y: C * y / 14),
     "line": (lambda y: C * y, lambda y: C + 0 * y),
-    "sine squared": (lambda y: C * (y / 2 - 3.5 / np.pi * np.sin(np.pi * y / 7)), lambda y: C * np.sin(np.pi * y / 14) ** 2),
+    "sine squared": (
+        lambda y: C * (y / 2 - 3.5 / np.pi * np.sin(np.pi * y / 7)),
+        lambda y: C * np.sin(np.pi * y / 14) ** 2,
+    ),
 }
 # f: (29), (20); largest shear of the discrete net within reach, from the wing and from the left ribbon; degrees
-PUBLISHED = {"parabola": (5.688, 5.711, 3.008, 2.134), "line": (0.238, 5.711, 0.169, 5.621), "sine squared": (5.670, 5.711, 5.669, 4.385)}  # fmt: skip
+PUBLISHED = {
+    "parabola": (5.688, 5.711, 3.008, 2.134),
+    "line": (0.238, 5.711, 0.169, 5.621),
+    "sine squared": (5.670, 5.711, 5.669, 4.385),
+}
 
 
 def crease_of(name):

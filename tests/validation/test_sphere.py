@@ -70,7 +70,11 @@ def mould():
 @pytest.fixture(scope="module", params=sorted(DISCRETE))
 def draped(request, mould):
     net = meshdrape.drape(
-        mould, meshdrape.Fabric(request.param * RADIUS), (0, 0, RADIUS), (1, 0, 0), extent=(0.0, 1050.0, 0.0, 1050.0)
+        mould,
+        meshdrape.Fabric(request.param * RADIUS),
+        (0, 0, RADIUS),
+        (1, 0, 0),
+        extent=(0.0, 1050.0, 0.0, 1050.0),
     )
     return request.param, net, meshdrape.measure(net).cell_shear
 

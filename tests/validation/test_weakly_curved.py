@@ -1,8 +1,8 @@
 """A weakly curved dome z = -sqrt(eps) (a x^2 + 2 b x y + c y^2), its corner u = v = 1.
 
-Source: Barton et al., New Techniques for Composite Wing Manufacture, section 7.1, (36) to (39). Errata: the start fibres
-of (38), (39) are the plane sections x = 0 and y = 0, which are geodesics only for b = 0; so a, b, c = 1, 1, 1, flat by its
-curvature, has the shear of (39) from plane sections and none from geodesics, which is what is draped.
+Source: Barton et al., New Techniques for Composite Wing Manufacture, section 7.1, (36) to (39). Errata: the start
+fibres of (38), (39) are the plane sections x = 0 and y = 0, which are geodesics only for b = 0; so a, b, c = 1, 1, 1,
+flat by its curvature, has the shear of (39) from plane sections and none from geodesics, which is what is draped.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def corner_shear(eps, a, b, c, n=150, spacing=25.0):
 
 @pytest.mark.parametrize(("eps", "sine"), SINE_OF_SHEAR.items())
 def test_dome(eps, sine):
-    """K = 4 eps (1 - ...): R = 1 / (2 sqrt(eps)), chord tolerance of the grid's triangles h; shear to 10 (h / R)^0.75."""
+    """R = 1 / (2 sqrt(eps)) at the top, h the chord tolerance of the grid's triangles; shear to 10 (h / R)^0.75."""
     root = 2 * np.sqrt(eps)
     h = root * (1.32 / 150) ** 2 / 4
     assert np.sin(corner_shear(eps, 1, 0, 1)) == pytest.approx(sine, abs=10 * (h * root) ** 0.75)

@@ -21,7 +21,11 @@ import meshdrape
 FIGURE_4 = {0.05: (18.59268, 10.79419), 0.02: (19.05227, 14.03986), 0.01: (19.11677, 15.55281)}
 PSI_AT_1 = -19.25821
 TURNED = PSI_AT_1 / 2  # gamma, degrees: middle of all psi
-FIGURE_4_TURNED = {0.05: 8.96357, 0.02: 9.42316, 0.01: 9.48766}  # rows from the left ribbon; from the wing unchanged
+FIGURE_4_TURNED = {
+    0.05: 8.96357,
+    0.02: 9.42316,
+    0.01: 9.48766,
+}  # rows from the left ribbon; from the wing unchanged
 SKEW, SKEW_PSI = 0.12, -6.842773
 
 
@@ -55,7 +59,7 @@ def test_unrolled_net_reproduces_the_published_maxima(spacing):
 
 @pytest.mark.parametrize("spacing", FIGURE_4)
 def test_figure_4(spacing):
-    """Nodes to 1.5 h, shear to min(sqrt(2 kappa h), h / spacing) + 0.01 degrees, h the chord tolerance of the facets."""
+    """Nodes to 1.5 h, shear to min(sqrt(2 kappa h), h / spacing) + 0.01 degrees; h is the facets' chord tolerance."""
     width, kappa = 0.5e-3, 0.8
     h = kappa * width**2 / 8
     crease = figure_4()
@@ -72,7 +76,7 @@ def test_figure_4(spacing):
 
 
 def test_maximum_of_the_whole_net_is_the_left_ribbons():
-    """The cells that straddle the crease may not hide it: `max_shear` speaks of them too, and its place is on the spar."""
+    """`max_shear` speaks of the cells that straddle the crease too, and may not fall short of the published one."""
     y = facets(1.0, 0.5e-3)
     crease = figure_4()
     draped = lay(crease, reference_net(crease, 0.05), y, 0.7, 0.6, 9)
@@ -90,7 +94,10 @@ def test_flat_wing_and_straight_skew_spar_need_no_shear(k):
     """The left ribbon turns by psi of itself, being straight, and the sheet lies without shear: 1e-6 degrees."""
     y = np.array([0.0, 310.0, 770.0, 1300.0, 2000.0])
     net = meshdrape.drape(
-        wing_spar(lambda t: 0 * t, lambda t: k * t, y, 2500, 900).mould(), meshdrape.Fabric(40.0), (1900, 0, 0), (0, 1, 0)
+        wing_spar(lambda t: 0 * t, lambda t: k * t, y, 2500, 900).mould(),
+        meshdrape.Fabric(40.0),
+        (1900, 0, 0),
+        (0, 1, 0),
     )
     shear = shear_deg(net)
     assert np.isfinite(shear).sum() > 1000
@@ -98,7 +105,7 @@ def test_flat_wing_and_straight_skew_spar_need_no_shear(k):
 
 
 def test_flat_wing_and_a_spar_that_turns_skew():
-    """psi = -arctan k where the spar is skew, 0 before: rows from before the bend shear there by psi, others not at all.
+    """psi = -arctan k where the spar is skew, 0 before: rows from before the bend shear there by psi, others do not.
 
     This is the published case gamma = 0, the left ribbon laid by a piece of straight crease before it. Exact on the
     polyhedron: 1e-6 degrees, leaving out cells within two spacings of the bend's corner.

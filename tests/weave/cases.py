@@ -6,9 +6,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from moulds import (
-    Mesh, bumpy, cap, cone, cube_corner, cylinder, holed_plate, hypar, icosphere, krogh, parallelogram, plate, sliver_plate,
-    step_corner, tube, wing_spar,
-)  # fmt: skip
+    Mesh,
+    bumpy,
+    cap,
+    cone,
+    cube_corner,
+    cylinder,
+    holed_plate,
+    hypar,
+    icosphere,
+    krogh,
+    parallelogram,
+    plate,
+    sliver_plate,
+    step_corner,
+    tube,
+    wing_spar,
+)
 
 import meshdrape
 

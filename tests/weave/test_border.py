@@ -1,12 +1,26 @@
-"""At the border and past it: fabric that leaves the mould still holds the net together, and no part of the mould stays bare."""
+"""At the border and past it: fabric off the mould still holds the net together, and no part of the mould stays bare."""
 
 import numpy as np
 import pytest
 from lattice import cells_at, nodes_at, offsets, placed, planar_lattice, shear_deg, statuses_at
 from moulds import (
-    Mesh, bumpy, cap, cone, cut_plate, cylinder, grid, holed_plate, hypar, icosphere, parallelogram, plate, sliver_plate,
-    triangle_plate, tube, wing_spar,
-)  # fmt: skip
+    Mesh,
+    bumpy,
+    cap,
+    cone,
+    cut_plate,
+    cylinder,
+    grid,
+    holed_plate,
+    hypar,
+    icosphere,
+    parallelogram,
+    plate,
+    sliver_plate,
+    triangle_plate,
+    tube,
+    wing_spar,
+)
 
 import meshdrape
 from meshdrape import NodeStatus
@@ -48,9 +62,14 @@ def box(length, width, centre=(0.0, 0.0)):
 
 
 SEEDS = {
-    "inside": (3.3, -7.1), "corner": (-100, -70), "border": (-100, 13), "another border": (31, 70), "middle of an edge": None,
-    "vertex": None, "near the border": (99.999999, 1.0),
-}  # fmt: skip
+    "inside": (3.3, -7.1),
+    "corner": (-100, -70),
+    "border": (-100, 13),
+    "another border": (31, 70),
+    "middle of an edge": None,
+    "vertex": None,
+    "near the border": (99.999999, 1.0),
+}
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 45, 90, 200])
@@ -131,7 +150,6 @@ def test_status_off_the_mould_is_kept_only_beside_the_mould():
     # every cell that touches the mould is whole, and cells that do not are far enough out to miss it
     touching = measures.cell_touches_mould
     assert np.isfinite(measures.cell_shear[touching]).all()
-    i, j = offsets(net)
     expected = planar_lattice(net, (3, 5, 0), np.radians(30))
     centre = (expected[:-1, :-1] + expected[1:, 1:]) / 2
     deep = (np.abs(centre[..., 0]) < 100) & (np.abs(centre[..., 1]) < 70)
@@ -156,6 +174,7 @@ def test_hole_is_bridged(degrees):
 
 def test_hole_larger_than_the_fabrics_way_round():
     """A thin frame: all but the rim is hole, and every node of the rim is found."""
+
     def within(x, y, margin):
         return box(200, 200)(x, y, margin) & ~box(180, 180)(x, y, -margin - 1e-12)
 
@@ -169,11 +188,13 @@ CONCAVE = {
     "U": (lambda x, y: (np.abs(x) > 40) | (y < -40), [(-70, 50), (70, 31), (3, -71)]),
     "T": (lambda x, y: (np.abs(x) < 30) | (y > 50), [(0, -70), (-80, 80)]),
     "comb": (lambda x, y: (y < -60) | (np.abs(np.mod(x + 10, 40) - 20) > 10), [(-90, 50), (3, -81)]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("degrees", [0, 35])
-@pytest.mark.parametrize(("shape", "start"), [(shape, k) for shape, (_, seeds) in CONCAVE.items() for k in range(len(seeds))])
+@pytest.mark.parametrize(
+    ("shape", "start"), [(shape, k) for shape, (_, seeds) in CONCAVE.items() for k in range(len(seeds))]
+)
 def test_concave_outline_does_not_stop_the_sheet(shape, start, degrees):
     """All of the plate that the sheet can reach is covered, from whichever arm it is begun, as the flat sheet lies."""
     keep, seeds = CONCAVE[shape]
@@ -197,6 +218,7 @@ def test_concave_outline_does_not_stop_the_sheet(shape, start, degrees):
 @pytest.mark.parametrize("seed", [(0, 0), (-150, -40), (140, 45)])
 def test_swept_plate(sweep, seed):
     """The weft generator leaves the mould early; what lies beyond its end is covered all the same."""
+
     def within(x, y, margin):
         across = (x - sweep * y) / np.hypot(1, sweep)
         return (np.abs(y) <= 50 + margin) & (np.abs(across) <= 150 / np.hypot(1, sweep) + margin)
@@ -206,8 +228,12 @@ def test_swept_plate(sweep, seed):
     assert_covers_the_plane(net, at, 0, within)
 
 
-@pytest.mark.parametrize("corners", [((0, 0), (300, 0), (60, 200)), ((0, 0), (300, 10), (290, 60)), ((0, 0), (200, 0), (0, 150))])
-@pytest.mark.parametrize("weight", [(0.97, 0.015, 0.015), (0.02, 0.96, 0.02), (1.0, 0.0, 0.0), (0.4, 0.3, 0.3), (0.5, 0.5, 0)])
+@pytest.mark.parametrize(
+    "corners", [((0, 0), (300, 0), (60, 200)), ((0, 0), (300, 10), (290, 60)), ((0, 0), (200, 0), (0, 150))]
+)
+@pytest.mark.parametrize(
+    "weight", [(0.97, 0.015, 0.015), (0.02, 0.96, 0.02), (1.0, 0.0, 0.0), (0.4, 0.3, 0.3), (0.5, 0.5, 0)]
+)
 def test_triangle_from_its_tips(corners, weight):
     a, b, c = np.array(corners, dtype=float)
     seed = tuple(np.array(weight) @ [a, b, c])
@@ -249,10 +275,15 @@ def test_developable_mould_keeps_unsheared_past_its_border():
         assert np.degrees(measures.max_shear) < 1e-6
 
 
-@pytest.mark.parametrize(("mesh", "seed", "direction"), [
-    (hypar(1.0, 0.4, 40), (-400, -400, 160), (1, 0, -0.4)), (cap(4), (200, 100, 970), (1, 0, 0)),
-    (bumpy(0), (-100, -100, 0), (1, 0.01, 0)), (bumpy(5), (-100, 3, 0), (0, 1, 0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("mesh", "seed", "direction"),
+    [
+        (hypar(1.0, 0.4, 40), (-400, -400, 160), (1, 0, -0.4)),
+        (cap(4), (200, 100, 970), (1, 0, 0)),
+        (bumpy(0), (-100, -100, 0), (1, 0.01, 0)),
+        (bumpy(5), (-100, 3, 0), (0, 1, 0)),
+    ],
+)
 def test_doubly_curved_mould_is_covered_from_its_corner(mesh, seed, direction):
     """Seed in the very corner, start fibres along curved borders: points all over the mould lie under whole cells."""
     mould = mesh.mould()
@@ -295,7 +326,7 @@ def test_closed_sphere():
     found = net.node_position[status == NodeStatus.PLACED]
     gap = np.linalg.norm(found[:, None] - found[None], axis=-1)
     gap[np.diag_indices(len(gap))] = np.inf
-    # two layers would put nodes of one within a fraction of a spacing of the other's; sheared cells have short diagonals
+    # two layers would put nodes of one beside the other's; but sheared cells have short diagonals too
     assert np.median(gap.min(axis=1)) > 0.3 * 90
 
 
@@ -311,12 +342,18 @@ def test_tube_ends_where_it_meets_itself():
     assert np.degrees(measures.max_shear) < 1e-6
 
 
-EXTENT = [(30.0, 50.0, 20.0, 40.0), (0.0, 60.0, 0.0, 35.0), (33.0, 0.0, 14.0, 0.0), (7.0, 7.0, 7.0, 7.0), (0.0, 21.0, 14.0, 14.0)]
+EXTENT = [
+    (30.0, 50.0, 20.0, 40.0),
+    (0.0, 60.0, 0.0, 35.0),
+    (33.0, 0.0, 14.0, 0.0),
+    (7.0, 7.0, 7.0, 7.0),
+    (0.0, 21.0, 14.0, 14.0),
+]
 
 
 @pytest.mark.parametrize("extent", EXTENT)
 def test_extent_bounds_the_cloth(extent):
-    """warp-, warp+, weft-, weft+: as many whole spacings as fit, to the node; the last node on the very edge is kept."""
+    """warp-, warp+, weft-, weft+: as many whole spacings as fit; a node on the very edge is kept."""
     net = lay(plate(), 7.0, (3, 5), 20, extent=extent)
     i, j = offsets(net)
     here = placed(net)

@@ -37,9 +37,7 @@ def test_second_order_in_spacing_on_a_sphere():
     steps, position, shear = [0.4, 0.2, 0.1], [], []
     for step in steps:
         n, every = round(0.8 / step), round(step / 0.025)
-        net = meshdrape.drape(
-            mould, meshdrape.Fabric(1000 * step), (0, 0, 1000), (1, 0, 0), extent=(0, 850, 0, 850)
-        )
+        net = meshdrape.drape(mould, meshdrape.Fabric(1000 * step), (0, 0, 1000), (1, 0, 0), extent=(0, 850, 0, 850))
         i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
         position.append(np.linalg.norm(nodes_at(net, i, j) / 1000 - smooth[::every, ::every], axis=-1).max())
         i, j = i[:-1, :-1], j[:-1, :-1]
@@ -69,7 +67,11 @@ def test_with_the_mesh_at_fixed_spacing_on_a_sphere():
         for angle in (0, 0.5, 1.1, 1.9):
             turn = rotation([0.2, -0.7, 0.4], angle)
             net = meshdrape.drape(
-                mould, meshdrape.Fabric(1000 * spacing), turn @ [0, 0, 1000], turn @ [1, 0, 0], extent=(0, 850, 0, 850)
+                mould,
+                meshdrape.Fabric(1000 * spacing),
+                turn @ [0, 0, 1000],
+                turn @ [1, 0, 0],
+                extent=(0, 850, 0, 850),
             )
             off.append(np.linalg.norm(nodes_at(net, i, j) / 1000 @ turn - reference, axis=-1))
             turn_off.append(cells_at(net, meshdrape.measure(net).cell_shear, i[:-1, :-1], j[:-1, :-1]) - smooth)

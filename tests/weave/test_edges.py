@@ -1,4 +1,4 @@
-"""Every edge of a net is a shortest path of one spacing, on any mould, to 1e-9: measured by libigl, not by the solver."""
+"""Every edge of a net is a shortest path of one spacing, on any mould, to 1e-9: libigl's word, not the solver's."""
 
 import numpy as np
 import pytest
@@ -50,7 +50,16 @@ def test_directions_are_unit_tangents_at_the_nodes(net):
         assert np.abs(np.einsum("ij,ij->i", direction[known], normal)).max() < 1e-9
 
 
-@pytest.mark.parametrize("name", ["hills", "steep hills", "closed sphere", "foot of a step, from the floor", "cap, cells far above triangles"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "hills",
+        "steep hills",
+        "closed sphere",
+        "foot of a step, from the floor",
+        "cap, cells far above triangles",
+    ],
+)
 def test_a_second_witness_agrees(name):
     """pygeodesic, on the whole extended mould with both ends inserted as vertices."""
     import pygeodesic.geodesic
@@ -59,7 +68,11 @@ def test_a_second_witness_agrees(name):
     here = placed(net)
     warp, weft = np.argwhere(here[:-1] & here[1:]), np.argwhere(here[:, :-1] & here[:, 1:])
     rng = np.random.default_rng(1)
-    edges = [(at, at + step) for some, step in ((warp, [1, 0]), (weft, [0, 1])) for at in some[rng.permutation(len(some))[:12]]]
+    edges = [
+        (at, at + step)
+        for some, step in ((warp, [1, 0]), (weft, [0, 1]))
+        for at in some[rng.permutation(len(some))[:12]]
+    ]
     for tail, head in edges:
         patch = Patch(net.surface, np.arange(len(net.surface.faces)))
         ends = []

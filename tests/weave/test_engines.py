@@ -10,10 +10,18 @@ import meshdrape
 
 # name: how much of it, mm of cloth each way; a reference node costs milliseconds
 PIECES = {
-    "hills": 30.0, "hills, cloth of 60 degrees": 33.0, "steep hills": 25.0, "wing and spar": 250.0, "cap, cells above triangles": 350.0,
-    "cap, cells far above triangles": 500.0, "hypar": 250.0, "cube's corner, from beside it": 110.0,
-    "cube's corner, from the vertex": 95.0, "foot of a step, from the floor": 150.0, "plate with a hole": 40.0,
-}  # fmt: skip
+    "hills": 30.0,
+    "hills, cloth of 60 degrees": 33.0,
+    "steep hills": 25.0,
+    "wing and spar": 250.0,
+    "cap, cells above triangles": 350.0,
+    "cap, cells far above triangles": 500.0,
+    "hypar": 250.0,
+    "cube's corner, from beside it": 110.0,
+    "cube's corner, from the vertex": 95.0,
+    "foot of a step, from the floor": 150.0,
+    "plate with a hole": 40.0,
+}
 
 
 @pytest.mark.slow

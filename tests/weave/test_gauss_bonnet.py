@@ -57,9 +57,7 @@ def inside(polygon, points):
     """Whether each point (n, 2) lies in a polygon, by the winding of its corners about it."""
     ray = polygon[None] - points[:, None]
     following = np.roll(ray, -1, axis=1)
-    turn = np.arctan2(
-        ray[..., 0] * following[..., 1] - ray[..., 1] * following[..., 0], (ray * following).sum(axis=-1)
-    )
+    turn = np.arctan2(ray[..., 0] * following[..., 1] - ray[..., 1] * following[..., 0], (ray * following).sum(axis=-1))
     return np.abs(turn.sum(axis=1)) > np.pi
 
 

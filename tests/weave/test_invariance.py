@@ -21,7 +21,7 @@ FINE = 1e-9  # of the spacing
 
 
 def compare(net, other, place=lambda p: p, index=lambda i, j: (i, j), tolerance=FINE, scale=1.0):
-    """Assert that `other` has the nodes of `net`, moved by `place`, at the indices `index` gives, and their statuses."""
+    """Assert that `other` has the nodes and statuses of `net`, moved by `place`, at the indices `index` gives."""
     i, j = offsets(net)
     oi, oj = index(i, j)
     assert np.array_equal(statuses_at(other, oi, oj), net.node_status)
@@ -57,7 +57,10 @@ def test_rigid_motion(name, axis, angle, shift):
     shift = 500 * np.array(shift)
     case = CASES[name]
     moved = replace(
-        case, mesh=case.mesh.moved(turn, shift), seed=tuple(turn @ case.seed + shift), direction=tuple(turn @ case.direction)
+        case,
+        mesh=case.mesh.moved(turn, shift),
+        seed=tuple(turn @ case.seed + shift),
+        direction=tuple(turn @ case.direction),
     )
     compare(draped(name), moved.drape(), place=lambda p: p @ turn.T + shift)
 
@@ -68,7 +71,10 @@ def test_scale(name, scale):
     case = CASES[name]
     spacing = tuple(scale * s for s in case.spacing) if isinstance(case.spacing, tuple) else scale * case.spacing
     larger = replace(
-        case, mesh=case.mesh.moved(np.eye(3), scale=scale), spacing=spacing, seed=tuple(scale * v for v in case.seed)
+        case,
+        mesh=case.mesh.moved(np.eye(3), scale=scale),
+        spacing=spacing,
+        seed=tuple(scale * v for v in case.seed),
     )
     net, other = draped(name), larger.drape()
     compare(net, other, place=lambda p: scale * p, scale=scale)
@@ -81,7 +87,9 @@ def test_numbering_of_vertices_and_of_triangles_and_their_corners(name):
     vertices, triangles = case.mesh
     order = rng.permutation(len(vertices))
     where = np.argsort(order)
-    turned = triangles[np.arange(len(triangles))[:, None], (np.arange(3) + rng.integers(3, size=(len(triangles), 1))) % 3]
+    turned = triangles[
+        np.arange(len(triangles))[:, None], (np.arange(3) + rng.integers(3, size=(len(triangles), 1))) % 3
+    ]
     compare(draped(name), case.with_mesh(Mesh(vertices[order], where[triangles])).drape())
     compare(draped(name), case.with_mesh(Mesh(vertices, triangles[rng.permutation(len(triangles))])).drape())
     compare(draped(name), case.with_mesh(Mesh(vertices, turned)).drape())
@@ -93,7 +101,10 @@ MIRROR = np.diag([1.0, -1.0, 1.0])
 def mirrored(case: Case, flip: bool) -> Case:
     mesh = case.mesh.moved(MIRROR)
     return replace(
-        case, mesh=mesh.reversed() if flip else mesh, seed=tuple(MIRROR @ case.seed), direction=tuple(MIRROR @ case.direction)
+        case,
+        mesh=mesh.reversed() if flip else mesh,
+        seed=tuple(MIRROR @ case.seed),
+        direction=tuple(MIRROR @ case.direction),
     )
 
 
@@ -116,7 +127,7 @@ def test_mirrored_vertices_alone_change_neither(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_warp_and_weft_swapped(name):
-    """Warp along the old weft: the old node (i, j) is the new (j, -i), and shear changes its sign (90 degree fabric)."""
+    """Warp along the old weft: the old node (i, j) is the new (j, -i), and shear changes its sign (square cloth)."""
     net, case = draped(name), CASES[name]
     weft = np.cross(net.surface.face_normal[net.start.face[0]], net.direction)
     spacing = case.spacing[::-1] if isinstance(case.spacing, tuple) else case.spacing
@@ -137,7 +148,10 @@ def test_threads_change_not_a_bit(name):
 
 def test_threads_change_not_a_bit_of_a_net_of_many_tiles():
     case = Case(hypar(0.8, 1.0, 41), 3.0, CASES["hypar"].seed, (1, 0.3, 0))
-    case = replace(case, seed=tuple(case.mesh.mould().surface.closest_point((120, -90, -9))[0].position(case.mesh.mould().surface)))
+    case = replace(
+        case,
+        seed=tuple(case.mesh.mould().surface.closest_point((120, -90, -9))[0].position(case.mesh.mould().surface)),
+    )
     one, many = case.drape(threads=1), case.drape(threads=4)
     assert one.node_status.size > 300_000
     assert np.array_equal(one.node_status, many.node_status)
@@ -171,7 +185,7 @@ def test_plane_carries_the_lattice_of_the_fabric(spacing, degrees, warp_at):
 
 @pytest.mark.parametrize("degrees", [60, 110])
 def test_cloth_that_is_not_square_on_a_sphere(degrees):
-    """Edges exact; shear counted from the initial angle, so next to nothing near the seed, of both signs farther out."""
+    """Edges exact; shear counted from the initial angle, so next to none near the seed, of both signs far out."""
     fabric = meshdrape.Fabric(60.0, initial_angle=np.radians(degrees))
     net = meshdrape.drape(icosphere(4).mould(), fabric, (0, 0, 1000), (1, 0.2, 0), extent=(700, 700, 700, 700))
     found = meshdrape.audit(net, edges=200)
@@ -187,7 +201,11 @@ def test_symmetric_mould_gives_a_symmetric_net_node_for_node():
     """Fibres along edges through vertices. The hypar is its own image under a half turn about either ruling."""
     net = meshdrape.drape(hypar(1.0, 1.0, 24, symmetric=True).mould(), meshdrape.Fabric(70.0), (0, 0, 0), (1, 0, 0))
     i, j = offsets(net)
-    for flip, index in ((np.diag([1, -1, -1]), (i, -j)), (np.diag([-1, 1, -1]), (-i, j)), (np.diag([-1, -1, 1]), (-i, -j))):
+    for flip, index in (
+        (np.diag([1, -1, -1]), (i, -j)),
+        (np.diag([-1, 1, -1]), (-i, j)),
+        (np.diag([-1, -1, 1]), (-i, -j)),
+    ):
         assert np.array_equal(statuses_at(net, *index), net.node_status)
         assert nodes_at(net, *index) == pytest.approx(net.node_position @ flip, abs=1e-9 * 70, nan_ok=True)
     # and under swapping the two
@@ -195,7 +213,7 @@ def test_symmetric_mould_gives_a_symmetric_net_node_for_node():
 
 
 def test_symmetric_corner_gives_a_symmetric_net():
-    """From the cube's corner towards the middle of a face: mirrored in the plane through that diagonal and the far edge."""
+    """From the cube's corner along the diagonal of a face: mirrored in the plane through it and the far edge."""
     net = meshdrape.drape(cube_corner(300, 2).mould(), meshdrape.Fabric(23.0), (0, 0, 0), (1, 1, 0))
     i, j = offsets(net)
     assert nodes_at(net, i, -j) == pytest.approx(net.node_position[..., [1, 0, 2]], abs=1e-8, nan_ok=True)

@@ -1,4 +1,4 @@
-"""What is measured on a net: signed shear, its maximum and place, share above locking, cloth, shear at nodes, fibre angles."""
+"""What is measured on a net: signed shear, its maximum and place, share above locking, cloth, fibre angles."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,11 @@ def corner():
 def dome():
     mould = icosphere(4).mould()
     net = meshdrape.drape(
-        mould, meshdrape.Fabric(40.0, locking_angle=np.radians(20)), (0, 0, 1000), (1, 0.2, 0), extent=(800,) * 4
+        mould,
+        meshdrape.Fabric(40.0, locking_angle=np.radians(20)),
+        (0, 0, 1000),
+        (1, 0.2, 0),
+        extent=(800,) * 4,
     )
     return meshdrape.measure(net)
 
@@ -78,9 +82,7 @@ def test_share_above_the_locking_angle(corner, dome):
 
 def test_cloth_needed():
     """Lengths of the flat sheet that hold all cells on the mould, and their area undeformed."""
-    measures = meshdrape.measure(
-        meshdrape.drape(plate().mould(), meshdrape.Fabric((10.0, 7.0)), (3, 4, 0), (1, 0, 0))
-    )
+    measures = meshdrape.measure(meshdrape.drape(plate().mould(), meshdrape.Fabric((10.0, 7.0)), (3, 4, 0), (1, 0, 0)))
     warp, weft, area = measures.cloth
     rows, columns = np.nonzero(measures.cell_touches_mould)
     assert warp == pytest.approx(10 * (np.ptp(rows) + 1))
@@ -139,14 +141,21 @@ def test_directions_are_the_fibres():
 
 def test_fibre_angles_on_a_plane():
     """From the reference axis to the fibre, right-handed about the normal, in (-90, 90] degrees."""
-    for degrees, reference, warp in [(20, (1, 0, 0), 20), (20, (0, 1, 0), -70), (110, (1, 0, 0), -70), (20, (1, 1, 5), -25)]:
+    for degrees, reference, warp in [
+        (20, (1, 0, 0), 20),
+        (20, (0, 1, 0), -70),
+        (110, (1, 0, 0), -70),
+        (20, (1, 1, 5), -25),
+    ]:
         angle = np.radians(degrees)
         net = meshdrape.drape(plate().mould(), meshdrape.Fabric(7.0), (3, 5, 0), (np.cos(angle), np.sin(angle), 0))
         field = read_off(meshdrape.measure(net), reference=reference)
         assert field.covered.all()
         assert field.coverage_fraction == pytest.approx(1)
         assert np.degrees(field.warp_angle) == pytest.approx(np.full(len(field.triangles), warp), abs=1e-6)
-        assert np.degrees(field.weft_angle) == pytest.approx(np.full(len(field.triangles), warp + 90 if warp <= 0 else warp - 90), abs=1e-6)
+        assert np.degrees(field.weft_angle) == pytest.approx(
+            np.full(len(field.triangles), warp + 90 if warp <= 0 else warp - 90), abs=1e-6
+        )
         assert np.abs(field.shear).max() < 1e-9
 
 
@@ -174,9 +183,7 @@ def test_read_off_covers_the_mould_and_keeps_its_area(mesh, area):
 
 def test_half_the_mould_under_cloth():
     """Cloth bounded to x < 0 covers half, but for the cells that straddle the line."""
-    net = meshdrape.drape(
-        plate().mould(), meshdrape.Fabric(2.0), (0, 0, 0), (1, 0, 0), extent=(200, 0, 200, 200)
-    )
+    net = meshdrape.drape(plate().mould(), meshdrape.Fabric(2.0), (0, 0, 0), (1, 0, 0), extent=(200, 0, 200, 200))
     field = read_off(meshdrape.measure(net))
     assert field.coverage_fraction == pytest.approx(0.5, abs=0.02)
 
