@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.cli.main import DONE, FABRIC_MISSING
-from meshdrape.cli.options import add_mould_options, degrees, numbers, read_mould, spacing
+from meshdrape.cli.options import add_mould_options, count, degrees, numbers, read_mould, spacing
 from meshdrape.cli.progress import Progress
 
 POINT = "a point X,Y,Z in mm"
@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     out.add_argument("--quiet", action="store_true", help="print nothing but errors")
     out.add_argument("--no-picture", action="store_true", help="do not draw NET.png")
     out.add_argument("--engine", choices=("fast", "libigl"), default="fast", help="libigl: every node by it; slow")
-    out.add_argument("--threads", type=int, metavar="N", help="default: all cores; the net does not depend on it")
+    out.add_argument("--threads", type=count, metavar="N", help="default: all cores; the net does not depend on it")
 
 
 def run(options: argparse.Namespace, arguments: list[str]) -> int:

@@ -52,6 +52,18 @@ def degrees(text: str) -> float:
     return math.radians(value)
 
 
+def count(text: str) -> int:
+    """A whole number from 1 on."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        msg = f"{text!r} is not a whole number from 1 on"
+        raise argparse.ArgumentTypeError(msg)
+    return value
+
+
 def add_reading_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     """The mould's file and how it is read."""
     parser.add_argument("mould", metavar="MOULD", help="STEP, BREP, STL, OBJ, PLY or OFF file, or a CadQuery script")

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT, edge_ends
-from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould
+from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould, turn_into
 
 OUTSIDE = 2
 
@@ -33,7 +33,8 @@ def positions(mesh, net, i_first, out):
 def node_tangent(mesh, net, start, family, i, j, spacing):
     """Unit tangent of a fibre at a node, in the frame of its face: the mean of the edges before and after it.
 
-    (0, 0) where the fibre has no edge at the node.
+    NaN where the fibre has no edge at the node. At the seed it is the half-fibre's own start: on a vertex the two
+    halves need not be opposite.
     """
     n_warp, n_weft = net.status.shape
     if family == WARP:
@@ -42,6 +43,16 @@ def node_tangent(mesh, net, start, family, i, j, spacing):
     else:
         after = j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD
         before = j > 0 and net.status[i, j - 1] <= OFF_MOULD
+    if i == start.origin[0] and j == start.origin[1]:
+        return turn_into(
+            mesh.plane,
+            mesh.neighbour,
+            mesh.frame,
+            start.face[family],
+            start.out[family, 0],
+            start.out[family, 1],
+            net.face[i, j],
+        )
     dx = 0.0
     dy = 0.0
     if after:
@@ -54,7 +65,7 @@ def node_tangent(mesh, net, start, family, i, j, spacing):
         dy -= py
     size = math.sqrt(dx * dx + dy * dy)
     if size == 0.0:
-        return 0.0, 0.0
+        return math.nan, math.nan
     return dx / size, dy / size
 
 
@@ -158,15 +169,10 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
                 qx = net.xy[i, j + 1, 0] - net.xy[i, j, 0]
                 qy = net.xy[i, j + 1, 1] - net.xy[i, j, 1]
                 out[a, j] = initial_angle - _angle(px, py, qx, qy)
-                size = 1.0 / weft
-                px = (net.xy[i + 1, j + 1, 0] - net.xy[i + 1, j, 0]) * size
-                py = (net.xy[i + 1, j + 1, 1] - net.xy[i + 1, j, 1]) * size
-                above[j, 0] = px
-                above[j, 1] = py
-                above[j, 2] = px
-                above[j, 3] = py
+                # the row above asks for this edge again if it needs it: it must not matter where a block begins
+                above[j, 0] = math.nan
                 continue
-            if not reuse:
+            if not reuse or math.isnan(below[j, 0]):
                 px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i, j, 1, weft)
                 below[j, 0] = px
                 below[j, 1] = py
@@ -264,7 +270,10 @@ def touching_cells(mesh, net, start, i_first, warp, weft, out):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def trim(net, touching, hem):
-    """Take back the nodes off the mould farther than `hem` cells from a cell that touches it: they become OUTSIDE."""
+    """Take back the nodes off the mould that no cell needs: they become OUTSIDE.
+
+    Those farther than `hem` cells from a cell that touches the mould, and those at no whole cell.
+    """
     n_warp, n_weft = net.status.shape
     for i in range(n_warp):
         for j in range(n_weft):
@@ -278,5 +287,21 @@ def trim(net, touching, hem):
                         break
                 if kept:
                     break
+            if not kept:
+                net.status[i, j] = OUTSIDE
+    for i in range(n_warp):
+        for j in range(n_weft):
+            if net.status[i, j] != OFF_MOULD:
+                continue
+            kept = False
+            for a in range(max(i - 1, 0), min(i + 1, n_warp - 1)):
+                for b in range(max(j - 1, 0), min(j + 1, n_weft - 1)):
+                    if (
+                        net.status[a, b] <= OFF_MOULD
+                        and net.status[a + 1, b] <= OFF_MOULD
+                        and net.status[a, b + 1] <= OFF_MOULD
+                        and net.status[a + 1, b + 1] <= OFF_MOULD
+                    ):
+                        kept = True
             if not kept:
                 net.status[i, j] = OUTSIDE

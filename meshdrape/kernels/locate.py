@@ -230,6 +230,8 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
                         sz += weight * tangent[family, ci, cj, 2]
                     continue
                 tx, ty = node_tangent(mesh, net, start, family, ci, cj, warp if family == WARP else weft)
+                if math.isnan(tx):
+                    continue
                 sx += weight * (tx * g[3] + ty * g[6])
                 sy += weight * (tx * g[4] + ty * g[7])
                 sz += weight * (tx * g[5] + ty * g[8])

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from meshdrape.errors import MouldError, SelectionError
 from meshdrape.mould.mould import CadFace, Mould
 from meshdrape.mould.patch import Patch, Tolerances
@@ -36,17 +34,18 @@ def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
             neighbours[number].update(other for other in numbers if other != number)
     listed = []
     for number, (face, name) in enumerate(zip(shape.faces, shape.names, strict=True), start=1):
-        centre = face.Center()
+        patch = Patch(face.wrapped)
+        middle = patch.middle
         listed.append(
             CadFace(
                 id=number,
                 name=name,
                 kind=face.geomType(),
                 area=float(face.Area()),
-                normal=np.array(face.normalAt(centre).toTuple()),
-                centre=np.array(centre.toTuple()),
+                normal=middle.normal[0] * (-1.0 if patch.reversed else 1.0),
+                centre=middle.position[0],
                 neighbours=tuple(sorted(neighbours[number])),
-                developable=Patch(face.wrapped).developable,
+                developable=patch.developable,
             )
         )
     return tuple(listed)
@@ -129,8 +128,8 @@ def select(
     if ids is not None:
         unknown = [number for number in ids if not 1 <= number <= len(listed)]
         if unknown or not ids:
-            what = ", ".join(map(str, unknown)) or "none"
-            msg = f"{origin} has no face {what}: its faces are 1 to {len(listed)}; {way_out}"
+            what = f"has no face {', '.join(map(str, unknown))}" if unknown else "was given no face to choose"
+            msg = f"{origin} {what}: its faces are 1 to {len(listed)}; {way_out}"
             raise SelectionError(msg, listed)
         return tuple(sorted(set(ids)))
     return _by_selector(shape, listed, str(faces), origin, way_out)
@@ -138,7 +137,7 @@ def select(
 
 def _as_ids(faces: str | Sequence[int]) -> list[int] | None:
     """The ids, if it is ids that were given."""
-    parts = faces.split(",") if isinstance(faces, str) else list(faces)
+    parts = [part for part in faces.split(",") if part.strip()] if isinstance(faces, str) else list(faces)
     try:
         return [int(part) for part in parts]
     except ValueError:

@@ -26,8 +26,9 @@ FLIP_GAIN: Final = 1e-6
 TILT_GAIN: Final = 1e-3
 # Smallest share a triangle may have of its quadrilateral in (u, v): less is three nodes in line.
 THINNEST: Final = 1e-6
-# A fan over a straight side is turned over one diagonal a round.
-MOST_ROUNDS: Final = 20_000
+# Rounds of flips, beyond one for each diagonal of a fan over a straight side, which turns over one by one. The two
+# rules for a flip, shape and tilt, may chase each other round a handful of diagonals.
+MOST_ROUNDS: Final = 100
 
 
 class Facets:
@@ -78,7 +79,8 @@ class Facets:
 
     def make_delaunay(self, touched: Ints | None = None) -> None:
         """Turn diagonals until all edges of the touched triangles are Delaunay, as far as (u, v) allows."""
-        for _ in range(MOST_ROUNDS):
+        fan = len(self.triangles) if touched is None else 0
+        for _ in range(MOST_ROUNDS + fan):
             edge = self.inner_edges(touched)
             edge = edge[self._gains(edge)]
             edge = edge[self.apart(edge, self._random.random(len(edge)))]
@@ -142,8 +144,8 @@ class Facets:
     def _gains(self, edge: Ints) -> Bools:
         """Whether a diagonal is better turned and may be.
 
-        Better is Delaunay in the mean metric of the quadrilateral, so long as neither facet tilts too far for it,
-        and less tilt where one does.
+        Better is Delaunay in the mean metric of the quadrilateral, so long as neither facet tilts too far for its
+        size, and less tilt where one does.
         """
         a, b, c, d = self.quads(edge)
         da, ca, cb, db = ((self.nodes.uv[q] - self.nodes.uv[p]).T for p, q in ((d, a), (c, a), (c, b), (d, b)))
@@ -153,11 +155,13 @@ class Facets:
         root = np.sqrt(np.maximum(m[0] * m[2] - m[1] ** 2, 0.0))
         now = _angle(m, root, ca, cb) + _angle(m, root, db, da)
         then = _angle(m, root, -da, -ca) + _angle(m, root, -cb, -db)
-        tilt = np.maximum(self.tilt(a, b, c), self.tilt(b, a, d))
+        # while edges are still longer than a unit their facets tilt by as much more
+        long = np.sqrt(np.maximum(np.maximum(_square(m, ca - cb), _square(m, ca - da)) / 4, 1.0))
+        tilt = np.maximum(self.tilt(a, b, c), self.tilt(b, a, d)) / long
         may_be = convex & ((now - then > FLIP_GAIN) | (tilt > 1.0))
         turned = np.full(len(edge), np.inf)
         a, b, c, d = a[may_be], b[may_be], c[may_be], d[may_be]
-        turned[may_be] = np.maximum(self.tilt(a, d, c), self.tilt(b, c, d))
+        turned[may_be] = np.maximum(self.tilt(a, d, c), self.tilt(b, c, d)) / long[may_be]
         return np.asarray(np.where(tilt > 1.0, turned < (1 - TILT_GAIN) * tilt, may_be & (turned <= 1.0)))
 
     def _rename(self, old: list[Ints], new: list[Ints]) -> None:
@@ -193,6 +197,11 @@ def _previous(half: Ints) -> Ints:
 
 def _cross(a: Floats, b: Floats) -> Floats:
     return np.asarray(a[0] * b[1] - a[1] * b[0])
+
+
+def _square(m: Floats, a: Floats) -> Floats:
+    """Square of a length in the metric."""
+    return np.asarray(m[0] * a[0] ** 2 + 2 * m[1] * a[0] * a[1] + m[2] * a[1] ** 2)
 
 
 def _angle(m: Floats, root: Floats, a: Floats, b: Floats) -> Floats:

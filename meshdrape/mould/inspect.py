@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from meshdrape.errors import SelectionError
+from meshdrape.errors import MouldError, SelectionError
 from meshdrape.mould.check import Fault, as_arrays, examine
 from meshdrape.mould.files import existing_file
 from meshdrape.mould.meshfile import read_mesh
@@ -59,11 +59,18 @@ def inspect_mould(
     ------
     FileError
         As for :func:`meshdrape.read_mould`.
+    MouldError
+        A mesh has a coordinate that is not finite, or the unit is unknown.
     """
     file = Path(path)
     if file.suffix.lower() in MESH:
+        factor = millimetres(unit or "mm")
         mesh = read_mesh(existing_file(file))
-        vertices, triangles = as_arrays(mesh.vertices, mesh.triangles, millimetres(unit or "mm"))
+        try:
+            vertices, triangles = as_arrays(mesh.vertices, mesh.triangles, factor)
+        except MouldError as error:
+            msg = f"{file}: {error}"
+            raise MouldError(msg) from error
         report = examine(vertices, triangles)
         mould = None if report.faults else read_mould(file, unit=unit)
         return Inspection(file, mould, (), False, report.faults)

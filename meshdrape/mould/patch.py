@@ -140,13 +140,8 @@ class Patch:
     @cached_property
     def samples(self) -> Nodes:
         """Nodes spread over the face; over its parameters, if none of those lie within its outline."""
-        from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
-        from OCP.gp import gp_Pnt2d
-        from OCP.TopAbs import TopAbs_State
-
         uv = self._grid()
-        classifier = BRepTopAdaptor_FClass2d(self.face, 1e-7)
-        inside = np.array([classifier.Perform(gp_Pnt2d(u, v)) != TopAbs_State.TopAbs_OUT for u, v in uv.tolist()])
+        inside = self._inside(uv)
         return self.nodes(uv[inside if inside.any() else slice(None)] * self.scale)
 
     @cached_property
@@ -156,6 +151,23 @@ class Patch:
         area = np.linalg.norm(np.cross(samples.tangent[:, 0], samples.tangent[:, 1]), axis=1)
         cell = np.prod(np.diff(self._bounds, axis=0) * self.scale) / SAMPLES**2
         return bool(np.sum(np.abs(samples.curvature) * area) * cell < FLATTEST)
+
+    @cached_property
+    def middle(self) -> Nodes:
+        """One node about the middle of the face: where its centre of mass projects, or the sample nearest to it."""
+        from OCP.BRep import BRep_Tool
+        from OCP.BRepGProp import BRepGProp
+        from OCP.GProp import GProp_GProps
+        from OCP.ShapeAnalysis import ShapeAnalysis_Surface
+
+        properties = GProp_GProps()
+        BRepGProp.SurfaceProperties_s(self.face, properties)
+        centre = properties.CentreOfMass()
+        uv = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.face)).ValueOfUV(centre, 1e-7)
+        if self._inside(np.array([uv.Coord()]))[0]:
+            return self.nodes(np.array([uv.Coord()]) * self.scale)
+        away = np.linalg.norm(self.samples.position - np.array(centre.Coord()), axis=1)
+        return self.samples[away.argmin(keepdims=True)]
 
     def nodes(self, uv: Floats) -> Nodes:
         """Return the nodes at scaled parameters, (k, 2)."""
@@ -189,6 +201,15 @@ class Patch:
             evaluate(u, v, point, su, sv, suu, svv, suv)
             rows.append(point.Coord() + su.Coord() + sv.Coord() + suu.Coord() + svv.Coord() + suv.Coord())
         return np.array(rows).reshape(-1, 6, 3)
+
+    def _inside(self, uv: Floats) -> Bools:
+        """Whether unscaled parameters lie within the outline of the face, (k,)."""
+        from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+        from OCP.gp import gp_Pnt2d
+        from OCP.TopAbs import TopAbs_State
+
+        classifier = BRepTopAdaptor_FClass2d(self.face, 1e-7)
+        return np.array([classifier.Perform(gp_Pnt2d(u, v)) != TopAbs_State.TopAbs_OUT for u, v in uv.tolist()])
 
     def _grid(self) -> Floats:
         """Middles of a grid of cells over the parameters, unscaled, (SAMPLES**2, 2)."""

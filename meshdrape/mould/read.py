@@ -90,4 +90,9 @@ def read_mould(
     except MouldError as error:
         msg = f"{file}: {error}"
         raise MouldError(msg) from error
+    except Exception as error:
+        if not type(error).__module__.startswith("OCP"):  # Open CASCADE's own have no base class in common
+            raise
+        msg = f"{file}: Open CASCADE cannot work out its faces ({type(error).__name__}); mend them in CAD"
+        raise MouldError(msg) from error
     return replace(mould, source=file, sha256=file_sha256(file))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +42,12 @@ def run_script(path: Path, parameters: Mapping[str, Any] | None = None) -> Named
             msg = f"{path} has no parameter {name!r}; it has {listed}"
             raise FileError(msg)
         values[name] = _value(path, name, word, known[name])
-    result = model.build(build_parameters=values)
+    try:
+        with redirect_stdout(sys.stderr):  # what the script prints is none of our output
+            result = model.build(build_parameters=values)
+    except SystemExit as error:
+        msg = f"{path}{_line_of(error)} ends the program; let it end with show_object(shape) instead"
+        raise FileError(msg) from error
     if not result.success:
         raised = result.exception
         msg = f"{path}{_line_of(raised)} failed: {type(raised).__name__}: {_one_line(raised)}"
@@ -64,12 +71,22 @@ def _value(path: Path, name: str, word: Any, parameter: Any) -> Any:
             msg = f"{path}: {name}={word} is not true or false"
             raise FileError(msg)
         return truth
+    default = parameter.default_value
+    defaults = default if isinstance(default, tuple) else (default,)
+    words = word.split(",")
     try:
-        number = float(word)
+        numbers = [float(part) for part in words]
     except ValueError:
-        msg = f"{path}: {name}={word} is not a number; its default is {parameter.default_value}"
-        raise FileError(msg) from None
-    return int(number) if isinstance(parameter.default_value, int) and number.is_integer() else number
+        numbers = []
+    if len(numbers) != len(defaults):
+        what = "a number" if defaults == (default,) else f"{len(defaults)} numbers separated by commas"
+        msg = f"{path}: {name}={word} is not {what}; its default is {default}"
+        raise FileError(msg)
+    values = tuple(
+        int(number) if isinstance(usual, int) and number.is_integer() else number
+        for number, usual in zip(numbers, defaults, strict=True)
+    )
+    return values if isinstance(default, tuple) else values[0]
 
 
 def _shapes(cq: Any, shown: Any) -> list[Any]:

@@ -107,8 +107,13 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
     for a, b, outer_a, outer_b in zip(
         tail.tolist(), head.tolist(), leaving.tolist(), np.roll(arriving, -1).tolist(), strict=True
     ):
-        new_faces.append((b, a, outer_a))
-        new_faces.append((b, outer_a, outer_b))
+        # cut along the shorter diagonal: a mirrored mould gets the mirrored collar
+        across_a = surface.vertices[b] - new_vertices[outer_a - first]
+        across_b = surface.vertices[a] - new_vertices[outer_b - first]
+        if across_a @ across_a <= across_b @ across_b:
+            new_faces += [(b, a, outer_a), (b, outer_a, outer_b)]
+        else:
+            new_faces += [(b, a, outer_b), (a, outer_a, outer_b)]
     return np.array(new_vertices), np.array(new_faces, dtype=np.int64)
 
 

@@ -80,7 +80,8 @@ def lay(
     star = seed_star(surface, point, direction, fabric.initial_angle)
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
-    cells = part.area / (fabric.warp_spacing * fabric.weft_spacing)
+    bounded = part.area if extent is None else min(part.area, (extent[0] + extent[1]) * (extent[2] + extent[3]))
+    cells = bounded / (fabric.warp_spacing * fabric.weft_spacing)
     reach = None
     if cells > SCOUT_FROM:
         check_memory(int(cells), 1, fabric, memory)
@@ -99,16 +100,11 @@ def lay(
 
 
 def _with_collar(part: Surface, depth: float) -> Surface:
-    """The surface with a collar of at least this depth, the last one made kept with the surface for the next drape.
-
-    Depths are rounded up to powers of two, so that drapes of like spacing share one and a net does not depend on
-    what was draped before.
-    """
-    depth = 2.0 ** np.ceil(np.log2(depth))
+    """The surface with a collar; the last one made is kept with the surface for the next drape of the same spacing."""
     kept: dict[float, Surface] = vars(part).setdefault("_collar", {})
     if depth not in kept:
         kept.clear()
-        kept[depth] = extended(part, float(depth))
+        kept[depth] = extended(part, depth)
     return kept[depth]
 
 

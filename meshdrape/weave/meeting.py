@@ -14,7 +14,7 @@ from meshdrape.weave.status import NodeStatus
 # round on itself.
 HARMLESS_CURVATURE = np.pi
 # On faces below this many spacings across, far-apart indices on one face are proof either way,
-SMALL_FACE = 2.0
+SMALL_FACE = 4.0
 # and worth looking for in a net of more than this many nodes.
 LARGE_NET = 30_000
 

@@ -12,6 +12,7 @@ from moulds import (
     cube_corner,
     cut_plate,
     cylinder,
+    grid,
     holed_plate,
     icosphere,
     plate,
@@ -131,6 +132,18 @@ def test_round_a_hole_and_round_a_corner():
     assert found == pytest.approx(2 * np.hypot(30, 30) + 60, rel=1e-12)
     ell = cut_plate(lambda x, y: (x < 0) | (y < 0))
     assert distance(ell, (50, -20, 0), (-30, 60, 0)) == pytest.approx(np.hypot(50, 20) + np.hypot(30, 60), rel=1e-12)
+
+
+def test_round_a_fin_rather_than_over_it():
+    """The shorter way leaves what a first look between the points takes in: over the fin 170 mm, round its end 128."""
+    import pygeodesic.geodesic
+
+    x, y = [-100, -50, -1, 0, 1, 50, 100], np.linspace(-100, 100, 21)
+    fin = grid(x, y, lambda x, y: (x, y, 35.0 * ((x == 0) & (np.abs(y) <= 30))))
+    a, b = np.flatnonzero((np.abs(fin.vertices[:, 0]) == 50) & (fin.vertices[:, 1] == 0))
+    theirs, _ = pygeodesic.geodesic.PyGeodesicAlgorithmExact(*fin).geodesicDistance(a, b)
+    assert theirs < 135
+    assert distance(fin, *fin.vertices[[a, b]]) == pytest.approx(theirs, rel=1e-12)
 
 
 def test_on_a_sphere_it_is_the_great_circle():
