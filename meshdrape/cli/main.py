@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import re
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from meshdrape import __version__
 from meshdrape.errors import MeshdrapeError
@@ -19,7 +21,12 @@ COMMANDS = {
 
 
 class _Parser(argparse.ArgumentParser):
-    """Errors in one line."""
+    """Errors in one line, and points that begin with a minus sign."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        # argparse takes -5 for a number but -5,0,0 for an option
+        self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> None:  # type: ignore[override]
         """Name what is wrong and where the help is; exit with 2."""

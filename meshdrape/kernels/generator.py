@@ -115,10 +115,7 @@ def trace(mesh, face, x, y, dx, dy, only, spacing, count, node_face, node_xy, no
             node_out[n, 1] = dy
             node_in[n, 0] = dx
             node_in[n, 1] = dy
-            sx = node_xy[n, 0]
-            sy = node_xy[n, 1]
             n += 1
-            begun = n * spacing
         if n == count:
             return WALKED, n, done
         done += exit_at

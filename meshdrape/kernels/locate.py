@@ -81,6 +81,19 @@ def _whole(net, i, j):
 
 
 @njit(cache=True, error_model="numpy")
+def _faces_alike(mesh, net, i, j, normal):
+    """Whether a corner of the cell lies on a face turned to the same side as a normal."""
+    for corner in range(4):
+        g = mesh.frame[net.face[i + (corner & 1), j + (corner >> 1)]]
+        nx = g[4] * g[8] - g[5] * g[7]
+        ny = g[5] * g[6] - g[3] * g[8]
+        nz = g[3] * g[7] - g[4] * g[6]
+        if nx * normal[0] + ny * normal[1] + nz * normal[2] > 0.1:
+            return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
 def _solve(px, py, pz, n, a, u, v):
     """Coordinates (alpha, beta) of a point from corner a along u and v, seen along the unit normal n."""
     rx = px - a[0]
@@ -198,6 +211,10 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
             if found:
                 break
         last_face = f
+        if found:
+            # the far side of a closed mould lies over the same cell, seen along the normal, but not on it
+            off = abs((px - a[0]) * normal[q, 0] + (py - a[1]) * normal[q, 1] + (pz - a[2]) * normal[q, 2])
+            found = off <= max(warp, weft) and _faces_alike(mesh, net, i, j, normal[q])
         if not found:
             i = first[f, 0]
             j = first[f, 1]

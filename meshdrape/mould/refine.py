@@ -64,7 +64,7 @@ def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools
     pole_a, pole_b = nodes.pole[a], nodes.pole[b]
     size[flat & (pole_a | pole_b)] = 0.0
     for pole, other, here in ((a, b, ~flat & pole_a), (b, a, ~flat & pole_b)):
-        size[here] = _length_from_pole(nodes, pole[here], other[here])
+        size[here] = _size_from_pole(nodes, pole[here], other[here], tolerances.chord)
     plain = ~flat & ~pole_a & ~pole_b
     size[plain] = _plain_size(nodes, a[plain], b[plain], tolerances.chord)
     return size
@@ -83,10 +83,12 @@ def _plain_size(nodes: Nodes, a: Ints, b: Ints, chord_tolerance: float) -> Float
     return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / MOST_DRIFT))))
 
 
-def _length_from_pole(nodes: Nodes, pole: Ints, other: Ints) -> Floats:
-    """Length of edges from a pole, where parameters say nothing, by the chord and the metric at the other end."""
-    step = _in_parameters(nodes.tangent[other], nodes.position[pole] - nodes.position[other])
-    return _length(nodes.metric[other], step)
+def _size_from_pole(nodes: Nodes, pole: Ints, other: Ints, chord_tolerance: float) -> Floats:
+    """Size of edges from a pole, where parameters say nothing, by the chord and the forms at the other end."""
+    chord = nodes.position[pole] - nodes.position[other]
+    length = _length(nodes.metric[other], _in_parameters(nodes.tangent[other], chord))
+    gap = np.abs(np.einsum("ki,ki->k", chord, nodes.normal[other])) / 4
+    return np.asarray(np.maximum(length, np.sqrt(gap / chord_tolerance)))
 
 
 def _length(metric: Floats, step: Floats) -> Floats:

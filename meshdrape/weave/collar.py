@@ -24,6 +24,8 @@ ONE_PLANE = 1e-6
 CREASE = np.radians(5.0)
 # Two planes meet along a ruling only if it leaves both borders at more than about 20 degrees.
 RULING_LEAVES = 0.35
+# Rulings of one developable face hardly turn from one border vertex to the next; beyond this sine they are none.
+RULINGS_APART = 0.1
 # An outer edge keeps at least this share of its border edge, else the extension of a hollow border would fold over.
 OUTER_EDGE_SHARE = 0.05
 
@@ -84,7 +86,9 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
             break
         touched = folded | np.roll(folded, 1)
         # planes of a doubly curved border meet at random: there a mitre is the better guess
-        stray = touched & ruled & (angle < CREASE)
+        apart = np.linalg.norm(np.cross(ruling, np.roll(ruling, -1, axis=0)), axis=1) > RULINGS_APART
+        crossing = folded & ruled & np.roll(ruled, -1) & apart
+        stray = (crossing | np.roll(crossing, 1)) & (angle < CREASE)
         ruled &= ~stray
         if not stray.any():
             shrink[touched] *= 0.8

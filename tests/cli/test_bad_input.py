@@ -161,7 +161,7 @@ def cases() -> list[Bad]:
         Bad("grammar.py", "", ("grammar.py, line 2", "not a Python script")),
         Bad("no-module.py", "", ("no-module.py, line 1", "no_such_module")),
         # seed and direction
-        Bad("top.stl", "--seed 0,0,12.5", ("seed (0, 0, 12.5)", "lies 12.5 mm", "one spacing (10 mm)", "nearest point")),
+        Bad("top.stl", "--seed 0,0,12.5", ("seed (0, 0, 12.5)", "lies 12.5 mm", "one spacing (10 mm)", "nearest")),
         Bad("top.stl", "--seed 150,0,0", ("lies 50 mm",)),
         Bad("top.stl", "--seed 1,2", ("--seed", "'1,2' is not a point")),
         Bad("top.stl", "--seed 1,2,nan", ("--seed", "'1,2,nan'")),
@@ -213,9 +213,8 @@ def in_one_line(outcome, *culprit):
 def test_drape(capfd, monkeypatch, tmp_path, moulds, case):
     monkeypatch.chdir(moulds)
     spacing = [] if "--spacing" in case.options else ["--spacing", "10"]
-    # as one word, for values that begin with a minus sign
-    option = [case.options.replace(" ", "=", 1)] if case.options else []
-    in_one_line(run(capfd, "drape", case.mould, "-o", tmp_path / "net.ply", *spacing, *option), *case.culprit)
+    words = ["drape", case.mould, "-o", tmp_path / "net.ply", *spacing, *case.options.split()]
+    in_one_line(run(capfd, *words), *case.culprit)
     assert list(tmp_path.iterdir()) == []
 
 

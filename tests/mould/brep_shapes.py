@@ -9,11 +9,11 @@ from typing import Any
 
 import cadquery as cq
 import numpy as np
-from OCP.BRepExtrema import BRepExtrema_DistShapeShape
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
-from OCP.gp import gp_Pnt
-from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
 from OCP.BRep import BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
+from OCP.gp import gp_Pnt
 
 from meshdrape import Mould
 from meshdrape.mould.brep import brep_mould

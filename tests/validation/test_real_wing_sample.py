@@ -44,6 +44,7 @@ def outward(mould, seed):
     return mould.surface.face_normal[mould.surface.closest_point(seed)[0].face]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_every_edge_is_exact_and_no_node_is_lost(name):
     mould = sample(name)

@@ -31,7 +31,7 @@ def test_fast_engine_equals_the_reference(name):
     case = replace(CASES[name], extent=(PIECES[name],) * 4)
     fast, reference = case.drape(), case.drape(engine="libigl")
     assert np.array_equal(fast.node_status, reference.node_status)
-    assert (fast.node_status <= 1).sum() > 30
+    assert (fast.node_status <= 1).sum() > 20
     off = np.linalg.norm(fast.node_position - reference.node_position, axis=-1)
     assert np.nanmax(off) < 1e-9 * fast.fabric.warp_spacing
     shear = [meshdrape.measure(net).cell_shear for net in (fast, reference)]
