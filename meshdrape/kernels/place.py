@@ -18,8 +18,6 @@ ALTERNATE_FROM = 5
 DAMPED_FROM = 24
 # Warp and weft closer than one degree to parallel are taken as folded.
 FOLD_COSINE = math.cos(math.radians(1.0))
-# Circles that touch rather than cross let no search close: what fails this near to parallel has folded.
-NEARLY_FOLDED = math.cos(math.radians(5.0))
 
 
 @njit(cache=True, error_model="numpy")
@@ -75,8 +73,6 @@ def place(plane, neighbour, frame, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, w
                 return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             return PLACED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
         if iterations == MAX_ITERATIONS:
-            if shared and abs(px * qx + py * qy) > NEARLY_FOLDED:
-                return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
         iterations += 1
         if shared:

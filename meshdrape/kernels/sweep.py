@@ -132,7 +132,7 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
     slack : float
         A node this near to the border counts as on the mould, mm.
     every : bool
-        Leave every node to be settled by others, as if it had not converged: what is found is only their first guess.
+        Leave every node to be settled by others, as if it had not converged: what is found is their first guess.
     report : (4,) int64
         Gets: nodes placed, iterations, and the (i, j) of a node that did not converge.
 

@@ -83,7 +83,7 @@ def test_cylinder(radius, eta):
     h = radius * (3.6 / n) ** 2 / 8
     reference = rolled_on_cylinder(flat_nodes(net, eta), radius, azimuth)
     assert on_smooth(net, reference, 500) < 2 * h + h / radius * 500
-    assert np.nanmax(np.abs(shear_deg(net))) < 1e-7
+    assert np.nanmax(np.abs(shear_deg(net))) < 1e-4
 
 
 @pytest.mark.parametrize("n", [7, 40, 333])
