@@ -82,9 +82,7 @@ def measured(net):
     ]
     angle = [
         np.arccos(
-            np.clip(
-                np.einsum("ijk,ijk->ij", a, b) / np.linalg.norm(a, axis=2) / np.linalg.norm(b, axis=2), -1, 1
-            )
+            np.clip(np.einsum("ijk,ijk->ij", a, b) / np.linalg.norm(a, axis=2) / np.linalg.norm(b, axis=2), -1, 1)
         )
         for a, b in corners
     ]
@@ -124,9 +122,7 @@ def flat_net(n_warp=30, n_weft=20, spacing=(2.0, 3.0), shear_deg=5.0, hole=True)
     sigma = np.pi / 2 - np.radians(shear_deg)
     i, j = np.meshgrid(np.arange(n_warp), np.arange(n_weft), indexing="ij")
     u, v = i * fabric.warp_spacing, j * fabric.weft_spacing
-    position = np.stack(
-        [0.1 + u + v * np.cos(sigma), 1 / 3 + v * np.sin(sigma), np.full_like(u, 7.0)], axis=2
-    )
+    position = np.stack([0.1 + u + v * np.cos(sigma), 1 / 3 + v * np.sin(sigma), np.full_like(u, 7.0)], axis=2)
     status = np.zeros((n_warp, n_weft), dtype=np.uint8)
     status[:, -1] = NodeStatus.OFF_MOULD
     if hole:
@@ -163,9 +159,7 @@ def sphere_net(half=24, spacing=40.0, radius=1000.0):
                     away = along - position[half + si * (i - 1), half + sj * (j - 1)]
                     position[half + si * i, half + sj * j] = along + np.sign(across @ away) * across
     theta, phi = np.meshgrid(np.linspace(0.0, 1.5, 40), np.linspace(0, 2 * np.pi, 121), indexing="ij")
-    dome = radius * np.stack(
-        [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=2
-    )
+    dome = radius * np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=2)
     merged = np.concatenate([dome[:1, 0], dome[1:, :-1].reshape(-1, 3)])
     index = np.concatenate(
         [np.zeros((1, 121), dtype=int), 1 + np.tile(np.r_[0:120, 0], (39, 1)) + 120 * np.arange(39)[:, None]]
@@ -179,9 +173,7 @@ def sphere_net(half=24, spacing=40.0, radius=1000.0):
     mould = KnownMould(merged, triangles)
     status = np.zeros((n, n), dtype=np.uint8)
     fabric = Fabric(spacing, locking_angle=np.radians(30))
-    return KnownNet(
-        mould, fabric, np.array([0, 0, radius]), np.array([1.0, 0, 0]), (half, half), position, status
-    )
+    return KnownNet(mould, fabric, np.array([0, 0, radius]), np.array([1.0, 0, 0]), (half, half), position, status)
 
 
 def wing_net(spacing=50.0, span=14000.0, chord=3000.0, height=1000.0):
@@ -196,9 +188,7 @@ def wing_net(spacing=50.0, span=14000.0, chord=3000.0, height=1000.0):
     position = np.stack([np.where(on_spar, 0.0, S), along, np.where(on_spar, S, 0.0) - drop], axis=2)
     y = np.linspace(0.0, span, 60)
     z = -1e-5 * y**2
-    profile = [
-        np.stack([x + 0 * y, y, z + dz], axis=1) for x, dz in ((0.0, -height), (0.0, 0.0), (chord, 0.0))
-    ]
+    profile = [np.stack([x + 0 * y, y, z + dz], axis=1) for x, dz in ((0.0, -height), (0.0, 0.0), (chord, 0.0))]
     mould = KnownMould(np.stack(profile[::-1], axis=1).reshape(-1, 3), grid_triangles(60, 3))
     status = np.zeros(position.shape[:2], dtype=np.uint8)
     fabric = Fabric(spacing, locking_angle=np.radians(7))

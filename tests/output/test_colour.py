@@ -35,9 +35,7 @@ def seen(rgba, eye):
         ]
     )
     f = np.cbrt(np.maximum(linear @ xyz.T / xyz.sum(axis=1), 1e-4))
-    return np.stack(
-        [116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1
-    )
+    return np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)
 
 
 @pytest.mark.parametrize("eye", EYES)

@@ -62,8 +62,6 @@ def test_without_a_wish_there_are_at_most_fifty_fibres_a_family(wing, tmp_path):
     assert 1 <= len(np.unique(nodes["j"][is_warp])) <= 50
 
 
-@pytest.mark.parametrize(
-    ("least", "step"), [(0.01, 1), (1, 1), (1.1, 2), (3, 5), (5.1, 10), (11, 20), (120, 200)]
-)
+@pytest.mark.parametrize(("least", "step"), [(0.01, 1), (1, 1), (1.1, 2), (3, 5), (5.1, 10), (11, 20), (120, 200)])
 def test_round_steps(least, step):
     assert round_step(least) == step

@@ -43,9 +43,7 @@ def test_meshlab_sees_nodes_cells_shear_colours_and_the_flat_sheet(written, mesh
     there = net.node_status <= NodeStatus.OFF_MOULD
     assert mesh.vertex_matrix().tobytes() == net.node_position[there].tobytes()
     shear = measures.node_shear(0, len(there))[there]
-    np.testing.assert_allclose(
-        mesh.vertex_scalar_array(), np.abs(np.degrees(np.nan_to_num(shear))), rtol=1e-6
-    )
+    np.testing.assert_allclose(mesh.vertex_scalar_array(), np.abs(np.degrees(np.nan_to_num(shear))), rtol=1e-6)
     colours = np.rint(255 * mesh.vertex_color_matrix())
     assert (colours == shear_colour(shear, net.fabric.locking_angle)).all()
     i, j = np.nonzero(there)
@@ -65,9 +63,7 @@ def test_meshlab_sees_nodes_cells_shear_colours_and_the_flat_sheet(written, mesh
 def test_cells_run_about_the_normal(written):
     net, _, path = written
     elements = read_ply(path).elements
-    points = np.stack([elements["vertex"][axis] for axis in "xyz"], axis=1)[
-        elements["face"]["vertex_indices"]
-    ]
+    points = np.stack([elements["vertex"][axis] for axis in "xyz"], axis=1)[elements["face"]["vertex_indices"]]
     normal = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
     first = elements["face"]["vertex_indices"][:, 0]
     i, j = elements["vertex"]["i"][first], elements["vertex"]["j"][first]
@@ -92,9 +88,7 @@ def test_columns_are_those_of_the_design(flat, tmp_path):
 
 def test_a_node_without_a_whole_cell_is_grey_and_its_quality_is_a_number(flat, tmp_path, meshlab):
     net, measures = flat
-    lonely = replace(
-        measures, shear_of_nodes=np.where(np.indices(net.node_status.shape)[0] == 3, np.nan, 0.1)
-    )
+    lonely = replace(measures, shear_of_nodes=np.where(np.indices(net.node_status.shape)[0] == 3, np.nan, 0.1))
     write_ply(net, tmp_path / "net.ply", lonely)
     node = read_ply(tmp_path / "net.ply").elements["vertex"]
     there = node["i"] == 3
@@ -108,9 +102,7 @@ def test_the_mould_is_found_from_where_the_file_lies(flat, tmp_path):
     net, measures = flat
     folder = tmp_path / "moulds and tools"
     (tmp_path / "out").mkdir()
-    mould = replace(
-        net.mould, source=folder / "Flügel.step", sha256="ab" * 32, chord_tolerance=0.1, unit="inch"
-    )
+    mould = replace(net.mould, source=folder / "Flügel.step", sha256="ab" * 32, chord_tolerance=0.1, unit="inch")
     write_ply(replace_mould(net, mould), tmp_path / "out" / "net.ply", measures)
     (tmp_path / "out").rename(tmp_path / "results")
     stored = read_net(tmp_path / "results" / "net.ply")
@@ -142,9 +134,7 @@ def test_a_net_that_does_not_fill_its_array_is_refused(flat, tmp_path):
 
 
 def replace_mould(net, mould):
-    return type(net)(
-        mould, net.fabric, net.seed, net.direction, net.seed_index, net.node_position, net.node_status
-    )
+    return type(net)(mould, net.fabric, net.seed, net.direction, net.seed_index, net.node_position, net.node_status)
 
 
 def test_blocks_make_no_difference(flat, tmp_path, monkeypatch):

@@ -125,9 +125,7 @@ def test_a_net_without_a_whole_cell_is_a_picture_of_the_mould(flat, pixels):
     status[net.seed_index] = NodeStatus.PLACED
     position = np.where(status[..., None] == NodeStatus.PLACED, net.node_position, np.nan)
     bare = type(net)(net.mould, net.fabric, net.seed, net.direction, net.seed_index, position, status)
-    drawing = pixels(
-        bare, replace(measures, cell_shear=np.full_like(measures.cell_shear, np.nan), max_shear=np.nan)
-    )
+    drawing = pixels(bare, replace(measures, cell_shear=np.full_like(measures.cell_shear, np.nan), max_shear=np.nan))
     assert share_near(drawing, (190, 190, 190), 40) > 0.1
 
 
@@ -169,9 +167,7 @@ def test_blocks_keep_every_peak_and_the_outline(wing, most):
     assert blocks.block > 1
     assert len(blocks.corners) <= most
     assert blocks.shear.max() == one.shear.max()
-    assert blocks.areas.sum() == pytest.approx(
-        one.areas.sum(), rel=0.03
-    )  # a block across the crease cuts it off
+    assert blocks.areas.sum() == pytest.approx(one.areas.sum(), rel=0.03)  # a block across the crease cuts it off
     np.testing.assert_array_equal(blocks.corners.min(axis=(0, 1)), one.corners.min(axis=(0, 1)))
 
 

@@ -24,9 +24,7 @@ def file(tmp_path):
     point_rows, face_rows = points.rows(1000), faces.rows(10)
     for name in POINT.names:
         shape = point_rows[name].shape
-        point_rows[name] = (
-            random.integers(0, 200, shape) if name in ("flag", "n") else random.normal(size=shape)
-        )
+        point_rows[name] = random.integers(0, 200, shape) if name in ("flag", "n") else random.normal(size=shape)
     face_rows["vertex_indices"] = random.integers(0, 1000, (10, 4))
     path = tmp_path / "file.ply"
     with ply_writer(path, [points, nothing, faces], ["first comment", " and  spaces "]) as ply:
@@ -49,10 +47,7 @@ def test_what_was_written_comes_back_bit_for_bit(file):
 def test_the_header_is_plain(file):
     header = file[0].read_bytes().split(b"end_header\n")[0].decode()
     assert header.startswith("ply\nformat binary_little_endian 1.0\ncomment first comment\n")
-    assert (
-        "element vertex 1000\nproperty double x\nproperty uchar flag\nproperty list uchar float weights\n"
-        in header
-    )
+    assert "element vertex 1000\nproperty double x\nproperty uchar flag\nproperty list uchar float weights\n" in header
     assert "property list uchar int vertex_indices\nproperty float quality\n" in header
 
 
@@ -64,9 +59,7 @@ def test_big_endian_and_any_order_of_properties_are_read(tmp_path):
         2,
         [[1, 2], [3, 4], [5, 6]],
     )
-    header = (
-        "ply\r\nformat binary_big_endian 1.0\r\nobj_info hello\r\nelement thing 3\r\nproperty float32 z\r\n"
-    )
+    header = "ply\r\nformat binary_big_endian 1.0\r\nobj_info hello\r\nelement thing 3\r\nproperty float32 z\r\n"
     header += "property list ushort int32 vertex_indices\r\nproperty double x\r\nend_header\r\n"
     path = tmp_path / "big.ply"
     path.write_bytes(header.encode() + rows.tobytes())

@@ -197,7 +197,7 @@ CONCAVE = {
     [("L", 0, 0), ("L", 0, 35), ("L", 1, 0), ("L", 2, 0), ("L", 2, 35), ("U", 2, 0), ("T", 0, 0), ("T", 1, 0)],
 )
 def test_concave_outline_does_not_stop_the_sheet(shape, start, degrees):
-    """Arms that lie ahead of the seed are covered, though the fibre to them leaves the plate, as the flat sheet lies."""
+    """Arms that lie ahead of the seed are covered as the flat sheet lies, though fibres to them leave the plate."""
     keep, seeds = CONCAVE[shape]
 
     def within(x, y, margin):
