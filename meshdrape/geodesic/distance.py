@@ -39,15 +39,19 @@ def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray
     used, compact = np.unique(faces, return_inverse=True)
     vertices, faces = vertices[used], compact.reshape(-1, 3)
     ends = np.searchsorted(used, [source, *targets])
-    # all by keyword: given positionally without targets the binding returns an empty array, silently
-    found = igl.exact_geodesic(
-        V=vertices,
-        F=faces,
-        VS=ends[:1],
-        FS=np.empty(0, dtype=np.int64),
-        VT=ends[1:],
-        FT=np.empty(0, dtype=np.int64),
-    )
+    try:
+        # all by keyword: given positionally without targets the binding returns an empty array, silently
+        found = igl.exact_geodesic(
+            V=vertices,
+            F=faces,
+            VS=ends[:1],
+            FS=np.empty(0, dtype=np.int64),
+            VT=ends[1:],
+            FT=np.empty(0, dtype=np.int64),
+        )
+    except MemoryError:
+        # on a patch of needles its windows may multiply without end: it does not know
+        return np.full(len(targets), np.inf)
     return np.asarray(found, dtype=np.float64)
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import FileError, missing_library
-from meshdrape.mould.quiet import quiet
+from meshdrape.mould.quiet import quiet, survives
+
+# A file that takes longer than this to read is taken to hang.
+SECONDS_TO_READ = 300.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +53,13 @@ def read_step(path: Path) -> NamedShape:
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPControl import STEPControl_Reader
 
+    def attempt() -> None:
+        trial = STEPControl_Reader()
+        if trial.ReadFile(str(path)) == IFSelect_ReturnStatus.IFSelect_RetDone:
+            trial.TransferRoots()
+            trial.OneShape()
+
+    _require_survival(path, attempt)
     shape = None
     with quiet():
         reader = STEPControl_Reader()
@@ -86,6 +97,7 @@ def read_brep(path: Path) -> NamedShape:
     if not _is_whole(content):
         msg = f"{path} is cut short; export it anew"
         raise FileError(msg)
+    _require_survival(path, lambda: cq.Shape.importBrep(str(path)))
     try:
         with quiet():
             whole = cq.Shape.importBrep(str(path))
@@ -93,6 +105,13 @@ def read_brep(path: Path) -> NamedShape:
         msg = f"{path} cannot be read as BREP ({type(error).__name__}); export it anew"
         raise FileError(msg) from error
     return of_shape(whole, path)
+
+
+def _require_survival(path: Path, attempt: Callable[[], object]) -> None:
+    """Raise FileError for a file damaged so that Open CASCADE crashes on it, or hangs."""
+    if not survives(attempt, SECONDS_TO_READ):
+        msg = f"{path} is damaged: Open CASCADE crashes or hangs reading it; export it anew"
+        raise FileError(msg)
 
 
 def _is_whole(brep: bytes) -> bool:

@@ -102,7 +102,8 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
     # a net with fewer nodes than points gives its tangents once, a larger one only where they are asked for
     few = net.shape[0] * net.shape[1] <= 2 * n
     tangent = np.stack(net.directions(0, net.shape[0])) if few else np.empty((2, 0, 0, 3))
-    step = max(1, -(-n // (4 * net.threads)))
+    # blocks of a fixed size: where one begins a search starts anew, which must not depend on the threads
+    step = 8192
     run_kernel(
         locate.read_cells,
         [

@@ -20,6 +20,8 @@ from meshdrape.weave.status import NodeStatus
 ENTRY_BYTES = 4 + 16 + 16 + 16 + 1
 # A node this near to the border, in spacings, counts as on the mould.
 BORDER_SLACK = 1e-6
+# More nodes than any machine holds: a spacing of next to nothing must not overflow the count.
+MOST_NODES = 1e18
 # Sense of the four half-fibres along warp and weft.
 SENSE = ((1, 0), (0, 1), (-1, 0), (0, -1))
 
@@ -40,7 +42,7 @@ def generator_counts(surface: Surface, fabric: Fabric, extent: Extent | None) ->
         lengths = [min(reach, extent[k]) for k in (1, 3, 0, 2)]
     spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
     # a cloth whose extent is a whole number of spacings keeps its last node
-    return [int(length / step + 1e-9) for length, step in zip(lengths, spacing, strict=True)]
+    return [int(min(length / step + 1e-9, MOST_NODES)) for length, step in zip(lengths, spacing, strict=True)]
 
 
 def lay_generators(

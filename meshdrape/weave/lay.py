@@ -14,6 +14,7 @@ from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import (
+    MOST_NODES,
     Extent,
     check_memory,
     empty_lattice,
@@ -81,7 +82,7 @@ def lay(
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
     bounded = part.area if extent is None else min(part.area, (extent[0] + extent[1]) * (extent[2] + extent[3]))
-    cells = bounded / (fabric.warp_spacing * fabric.weft_spacing)
+    cells = min(bounded / fabric.warp_spacing / fabric.weft_spacing, MOST_NODES)
     reach = None
     if cells > SCOUT_FROM:
         check_memory(int(cells), 1, fabric, memory)
