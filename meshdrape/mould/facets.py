@@ -23,7 +23,7 @@ from meshdrape.mould.patch import Bools, Floats, Ints, Nodes
 # rad of opposite angles that a flip must gain, so that round-off cannot turn a diagonal to and fro.
 FLIP_GAIN: Final = 1e-6
 # Share of a facet's tilt that a flip must gain.
-TILT_GAIN: Final = 0.1
+TILT_GAIN: Final = 1e-3
 # Smallest share a triangle may have of its quadrilateral in (u, v): less is three nodes in line.
 THINNEST: Final = 1e-6
 # Rounds of flips, beyond one for each diagonal of a fan over a straight side, which turns over one by one. The two
@@ -145,7 +145,7 @@ class Facets:
         """Whether a diagonal is better turned and may be.
 
         Better is Delaunay in the mean metric of the quadrilateral, so long as neither facet tilts too far for its
-        size, and less tilt where one does.
+        size, and less tilt by a shorter diagonal where one does.
         """
         a, b, c, d = self.quads(edge)
         da, ca, cb, db = ((self.nodes.uv[q] - self.nodes.uv[p]).T for p, q in ((d, a), (c, a), (c, b), (d, b)))
@@ -158,7 +158,9 @@ class Facets:
         # while edges are still longer than a unit their facets tilt by as much more
         long = np.sqrt(np.maximum(np.maximum(_square(m, ca - cb), _square(m, ca - da)) / 4, 1.0))
         tilt = np.maximum(self.tilt(a, b, c), self.tilt(b, a, d)) / long
-        may_be = convex & ((now - then > FLIP_GAIN) | (tilt > 1.0))
+        place = self.nodes.position
+        shorter = np.linalg.norm(place[c] - place[d], axis=1) < np.linalg.norm(place[a] - place[b], axis=1)
+        may_be = convex & np.where(tilt > 1.0, shorter, now - then > FLIP_GAIN)
         turned = np.full(len(edge), np.inf)
         a, b, c, d = a[may_be], b[may_be], c[may_be], d[may_be]
         turned[may_be] = np.maximum(self.tilt(a, d, c), self.tilt(b, c, d)) / long[may_be]

@@ -15,8 +15,6 @@ from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances
 MOST_DRIFT: Final = 0.1
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
 SIZE_CLASS: Final = 1.25
-# No node is put nearer to a corner than this share of the edge it splits.
-NEAREST: Final = 0.1
 MOST_TRIANGLES: Final = 2_000_000
 
 Evaluate = Callable[[Ints, Floats], Nodes]
@@ -44,8 +42,7 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
     while True:
         edge = facets.inner_edges()
         size = _size(facets, edge, tolerances, developable)
-        wanted = (size > 1) & ~_is_crowded(facets.nodes, *facets.quads(edge))
-        edge, size = edge[wanted], size[wanted]
+        edge, size = edge[size > 1], size[size > 1]
         edge = edge[facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))]
         if not len(edge):
             return
@@ -92,14 +89,6 @@ def _size_from_pole(nodes: Nodes, pole: Ints, other: Ints, chord_tolerance: floa
     length = _length(nodes.metric[other], _in_parameters(nodes.tangent[other], chord))
     gap = np.abs(np.einsum("ki,ki->k", chord, nodes.normal[other])) / 4
     return np.asarray(np.maximum(length, np.sqrt(gap / chord_tolerance)))
-
-
-def _is_crowded(nodes: Nodes, a: Ints, b: Ints, c: Ints, d: Ints) -> Bools:
-    """Whether the middle of an edge a-b all but falls on the corner c or d: there it is the diagonal that is wrong."""
-    metric = (nodes.metric[a] + nodes.metric[b]) / 2
-    middle = (nodes.uv[a] + nodes.uv[b]) / 2
-    nearest = np.minimum(_length(metric, nodes.uv[c] - middle), _length(metric, nodes.uv[d] - middle))
-    return np.asarray(nearest < NEAREST * _length(metric, nodes.uv[b] - nodes.uv[a]))
 
 
 def _length(metric: Floats, step: Floats) -> Floats:

@@ -94,20 +94,3 @@ def test_splits_keep_the_surface_and_its_neighbours():
     signed = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
     assert signed.min() > 0
     assert signed.sum() == pytest.approx(area, rel=1e-12)
-
-
-def test_a_tilted_facet_is_turned_though_it_is_delaunay():
-    """A roof whose ridge the better-shaped diagonal would cut off."""
-    uv = np.array([[0, 0], [1, 0], [1, 1.05], [0, 1.05]])
-    nodes = flat_nodes(uv, (0.1, 0, 0.1))
-    nodes.position[:, 2] = [0, 0.3, 0, 0.3]  # a valley along 0-2, a ridge along 1-3
-    slope = np.array([[-0.3, -0.28, 1], [0, 0, 1], [0.3, 0.28, 1], [0, 0, 1]])
-    nodes.normal[:] = slope / np.linalg.norm(slope, axis=1)[:, None]
-    tilts = {}
-    for diagonal, triangles in {"0-2": [[0, 1, 2], [0, 2, 3]], "1-3": [[0, 1, 3], [1, 2, 3]]}.items():
-        facets = Facets(nodes, np.array(triangles), np.ones(1))
-        tilts[diagonal] = facets.tilt(*facets.triangles.T).max()
-    assert tilts["1-3"] < 0.8 * tilts["0-2"]
-    facets = Facets(nodes, np.array([[0, 1, 2], [0, 2, 3]]), np.array([0.5 * (tilts["1-3"] + tilts["0-2"])]))
-    facets.make_delaunay()
-    assert (1, 3) in edges(facets.triangles)
