@@ -81,7 +81,7 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         start = np.where(fan[:, None], depth * outward, reach[:, None] * ray)
         end = np.roll(np.where(fan[:, None], depth * before, reach[:, None] * ray), -1, axis=0)
         outer = length + np.einsum("ij,ij->i", end - start, along)
-        folded = (outer < OUTER_EDGE_SHARE * length) | ~_upright(length, along, normal, start, end)
+        folded = outer < OUTER_EDGE_SHARE * length
         if not folded.any():
             break
         touched = folded | np.roll(folded, 1)
@@ -91,9 +91,7 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         stray = (crossing | np.roll(crossing, 1)) & (angle < CREASE)
         ruled &= ~stray
         if not stray.any():
-            # where the outline turns inwards it is that corner's reach that folds the strip
-            inward = touched & (turn < 0)
-            shrink[inward if (inward & (folded | np.roll(folded, 1))).any() else touched] *= 0.8
+            shrink[touched] *= 0.8
 
     new_vertices: list[FloatArray] = []
     new_faces: list[tuple[int, int, int]] = []
@@ -121,26 +119,6 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         else:
             new_faces += [(b, a, outer_b), (a, outer_a, outer_b)]
     return np.array(new_vertices), np.array(new_faces, dtype=np.int64)
-
-
-def _upright(
-    length: FloatArray, along: FloatArray, normal: FloatArray, start: FloatArray, end: FloatArray
-) -> NDArray[np.bool_]:
-    """Whether neither way of cutting each strip in two turns a triangle over; its corners relative to its tail."""
-    head = length[:, None] * along
-    outer_head = head + end
-    least = 1e-9 * length * np.linalg.norm(start, axis=1)
-
-    def area(p: FloatArray, q: FloatArray, r: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("ij,ij->i", np.cross(q - p, r - p), normal))
-
-    tail = np.zeros_like(head)
-    return np.asarray(
-        (area(head, tail, start) > least)
-        & (area(head, start, outer_head) > least)
-        & (area(head, tail, outer_head) > least)
-        & (area(tail, start, outer_head) > least)
-    )
 
 
 def _fan(first: FloatArray, last: FloatArray, along: FloatArray, turn: float) -> list[FloatArray]:
