@@ -4,12 +4,15 @@ import math
 
 from numba import njit
 
+from meshdrape.kernels.certify import second_route, turned_over
 from meshdrape.kernels.walk import WALKED, turn_into, walk
 
 PLACED = 0
 OUTSIDE = 2
 FOLDED = 3
 NOT_CONVERGED = 7
+# Placed, but one of the two paths may have a shorter way round a convex vertex.
+DOUBTED = 100
 
 MAX_ITERATIONS = 40
 # From here on the two paths are turned in alternation: both at once may jump from side to side of a vertex for ever.
@@ -21,7 +24,7 @@ FOLD_COSINE = math.cos(math.radians(1.0))
 
 
 @njit(cache=True, error_model="numpy")
-def place(plane, neighbour, frame, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance):
+def place(plane, neighbour, frame, detour, normal, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance):
     """Point at geodesic distance wa from A and wb from B, near the ends of the two given paths.
 
     Both paths are walked and brought into one plane, where the ends of all paths that cross the same triangles lie
@@ -71,7 +74,15 @@ def place(plane, neighbour, frame, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, w
                 qx, qy = turn_into(plane, neighbour, frame, f2, qx, qy, f1)
             if abs(px * qx + py * qy) > FOLD_COSINE or (px * qy - py * qx) * side < 0.0:
                 return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
-            return PLACED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+            code = PLACED
+            if (
+                second_route(plane, neighbour, detour, fa, xa, ya, ux, uy, wa)
+                or second_route(plane, neighbour, detour, fb, xb, yb, vx, vy, wb)
+                or turned_over(normal, fa, f1)
+                or turned_over(normal, fb, f1)
+            ):
+                code = DOUBTED
+            return code, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
         if iterations == MAX_ITERATIONS:
             return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
         iterations += 1

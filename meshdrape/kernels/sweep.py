@@ -5,7 +5,8 @@ import math
 import numpy as np
 from numba import njit
 
-from meshdrape.kernels.place import NOT_CONVERGED, OUTSIDE, PLACED, place
+from meshdrape.kernels.certify import second_route, turned_over
+from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, OUTSIDE, PLACED, place
 from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
 
 OFF_MOULD = 1
@@ -13,6 +14,13 @@ NOT_REACHED = 8
 
 WARP = 0
 WEFT = 1
+
+# Why a tile stopped at a node that has place and edges: its edges may not be the shortest; or it is held by one fibre
+# alone, a warp or a weft, whose edge may not be.
+LOST = 0
+UNSURE = 1
+FREE_WARP = 2
+FREE_WEFT = 3
 
 
 @njit(cache=True, error_model="numpy")
@@ -111,7 +119,9 @@ def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, every, report):
+def sweep(
+    mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, every, report
+):
     """Place the nodes (i_first + si a, j_first + sj b) of one tile, 0 <= a < i_count, 0 <= b < j_count.
 
     A node has two parents, A one step back along the warp and B one step back along the weft, and the node D that
@@ -133,15 +143,15 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
         A node this near to the border counts as on the mould, mm.
     every : bool
         Leave every node to be settled by others, as if it had not converged: what is found is their first guess.
-    report : (4,) int64
-        Gets: nodes placed, iterations, and the (i, j) of a node that did not converge.
+    report : (5,) int64
+        Gets: nodes placed, iterations, the (i, j) of a node to be settled, and why: LOST, UNSURE, FREE_WARP, FREE_WEFT.
 
     A tile lies in one quadrant, so every edge runs outward, from the parent, its tail, to the node.
 
     Returns
     -------
     bool
-        True if the tile is done; False if it stopped at report[2:], marked NOT_CONVERGED, and must be called again
+        True if the tile is done; False if it stopped at report[2:4], marked NOT_CONVERGED, and must be called again
         once that node is settled.
     """
     # single arrays for the hot loop: a call with a whole table costs more than what it does
@@ -149,6 +159,9 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
     neighbour = mesh.neighbour
     frame = mesh.frame
     rim = mesh.rim
+    detour = detours.tangent
+    wary = detours.wary
+    normal = detours.normal
     face = net.face
     xy = net.xy
     warp_out = net.warp_out
@@ -188,7 +201,14 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
             has_d = status[ia, jb] <= OFF_MOULD
             if not (has_a and has_b and has_d):
                 known = False
-                status[i, j] = _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report)
+                code = _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report)
+                if code >= DOUBTED:
+                    status[i, j] = NOT_CONVERGED
+                    report[2] = i
+                    report[3] = j
+                    report[4] = FREE_WARP if code == DOUBTED + WARP else FREE_WEFT
+                    return False
+                status[i, j] = code
                 continue
             fd = face[ia, jb]
             fa = face[ia, j]
@@ -198,7 +218,7 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
             xb = xy[i, jb, 0]
             yb = xy[i, jb, 1]
             at_seed = ia == i0 and jb == j0
-            if fa == fb and fa == fd and not at_seed and not every:
+            if fa == fb and fa == fd and not wary[fa] and not at_seed and not every:
                 # the planar fourth corner of the rhombus, if this triangle holds it
                 ux = (xb - xy[ia, jb, 0]) / warp
                 uy = (yb - xy[ia, jb, 1]) / warp
@@ -275,7 +295,25 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
             vx = c * ex + s * ey
             vy = c * ey - s * ex
             code, f, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations = place(
-                plane, neighbour, frame, fa, xa, ya, ux, uy, warp, fb, xb, yb, vx, vy, weft, side, tolerance
+                plane,
+                neighbour,
+                frame,
+                detour,
+                normal,
+                fa,
+                xa,
+                ya,
+                ux,
+                uy,
+                warp,
+                fb,
+                xb,
+                yb,
+                vx,
+                vy,
+                weft,
+                side,
+                tolerance,
             )
             report[1] += iterations
             if every and code == PLACED:
@@ -299,16 +337,22 @@ def sweep(mesh, net, start, si, sj, i_first, i_count, j_first, j_count, warp, we
                 ry = py
             else:
                 known = False
-                if status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD and not every:
+                if code != DOUBTED and status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD and not every:
                     # the extension is no mould: what fails on it is lost to it, not to the cloth
                     code = OUTSIDE
                 status[i, j] = code
-                if code == NOT_CONVERGED:
+                if code in (NOT_CONVERGED, DOUBTED):
                     face[i, j] = f
                     xy[i, j, 0] = x
                     xy[i, j, 1] = y
+                    warp_out[warp_at, j, 0] = ux
+                    warp_out[warp_at, j, 1] = uy
+                    weft_out[i, min(j, jb), 0] = vx
+                    weft_out[i, min(j, jb), 1] = vy
+                    status[i, j] = NOT_CONVERGED
                     report[2] = i
                     report[3] = j
+                    report[4] = UNSURE if code == DOUBTED else LOST
                     return False
     return True
 
@@ -322,68 +366,84 @@ def _half_fibre(si, sj):
 
 
 @njit(cache=True, error_model="numpy")
-def _near_mould(status, i, j, back_i, back_j):
-    """Whether the fibre left the mould no more than two nodes before (i, j)."""
+def _near_mould(status, i, j, back_i, back_j, i0, j0):
+    """Whether the fibre left the mould no more than two nodes before (i, j), on this side of the generators."""
     for _ in range(3):
         if i < 0 or j < 0 or i >= status.shape[0] or j >= status.shape[1] or status[i, j] > OFF_MOULD:
             return False
         if status[i, j] == PLACED:
             return True
+        # beyond a generator lies another quadrant, which may be swept later
+        if (back_i != 0 and i == i0) or (back_j != 0 and j == j0):
+            return False
         i += back_i
         j += back_j
     return False
 
 
 @njit(cache=True, error_model="numpy")
-def _go_free(mesh, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report):
+def _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report):
     """Status of a node that lacks a parent, placed straight on from the other one where the sheet hangs free."""
     status = net.status
+    i0 = start.origin[0]
+    j0 = start.origin[1]
     ia = i - si
     jb = j - sj
     side = float(si * sj)
     half = _half_fibre(si, sj)
-    if has_a and status[i, jb] == OUTSIDE and _near_mould(status, ia, j, -si, 0):
-        if ia != start.origin[0]:
+    if has_a and status[i, jb] == OUTSIDE and _near_mould(status, ia, j, -si, 0, i0, j0):
+        if ia != i0:
             if status[ia - si, j] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WARP, ia - si, j, si, warp)
-                return _step(mesh, net, start, WARP, ia, j, si, i, j, dx, dy, warp, slack, report)
+                return _step(mesh, detours, net, start, WARP, ia, j, si, i, j, dx, dy, warp, slack, report)
         elif status[ia, jb] <= OFF_MOULD:
             # from the weft generator itself: at the initial angle
             _, _, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
             c = math.cos(start.sector[half])
             s = -side * math.sin(start.sector[half])
-            return _step(mesh, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report)
-    if has_b and status[ia, j] == OUTSIDE and _near_mould(status, i, jb, 0, -sj):
-        if jb != start.origin[1]:
+            return _step(
+                mesh, detours, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report
+            )
+    if has_b and status[ia, j] == OUTSIDE and _near_mould(status, i, jb, 0, -sj, i0, j0):
+        if jb != j0:
             if status[i, jb - sj] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WEFT, i, jb - sj, sj, weft)
-                return _step(mesh, net, start, WEFT, i, jb, sj, i, j, dx, dy, weft, slack, report)
+                return _step(mesh, detours, net, start, WEFT, i, jb, sj, i, j, dx, dy, weft, slack, report)
         elif status[ia, jb] <= OFF_MOULD:
             _, _, gx, gy = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
             c = math.cos(start.sector[half])
             s = side * math.sin(start.sector[half])
-            return _step(mesh, net, start, WEFT, i, jb, sj, i, j, c * gx - s * gy, s * gx + c * gy, weft, slack, report)
+            return _step(
+                mesh, detours, net, start, WEFT, i, jb, sj, i, j, c * gx - s * gy, s * gx + c * gy, weft, slack, report
+            )
     if (has_a or status[ia, j] == OUTSIDE) and (has_b or status[i, jb] == OUTSIDE):
         return OUTSIDE
     return NOT_REACHED
 
 
 @njit(cache=True, error_model="numpy")
-def _step(mesh, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, report):
-    """Place (i2, j2) one edge straight on from (i, j); its status."""
+def _step(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, report):
+    """Place (i2, j2) one edge straight on from (i, j).
+
+    Returns its status, or DOUBTED and the family of the edge that may have a shorter way.
+    """
     size = math.sqrt(dx * dx + dy * dy)
     dx /= size
     dy /= size
-    code, f, x, y, ex, ey = walk(
-        mesh.plane, mesh.neighbour, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length
-    )
+    tail = net.face[i, j]
+    x = net.xy[i, j, 0]
+    y = net.xy[i, j, 1]
+    doubted = second_route(mesh.plane, mesh.neighbour, detours.tangent, tail, x, y, dx, dy, length)
+    code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, tail, x, y, dx, dy, length)
     if code != WALKED:
         return OUTSIDE
-    report[0] += 1
     x += length * ex
     y += length * ey
     net.face[i2, j2] = f
     net.xy[i2, j2, 0] = x
     net.xy[i2, j2, 1] = y
     keep_edge(net, start, family, i, j, step, dx, dy, ex, ey)
+    if doubted or turned_over(detours.normal, tail, f):
+        return DOUBTED + family
+    report[0] += 1
     return OFF_MOULD if off_mould(mesh, f, x, y, slack) else PLACED

@@ -37,6 +37,18 @@ class Unfolding(NamedTuple):
     """(m,) -1 on the mould; else bits of what the face shares with it: edges 0 to 2, then corners 0 to 2."""
 
 
+class Detours(NamedTuple):
+    """Where straight paths may have a shorter way round a convex vertex: a table of its own, for few loops ask."""
+
+    tangent: FloatArray
+    """(m, 3) per corner of a face, the tangent of half the angle defect of its vertex, with a margin; 0 where the
+    vertex is not convex."""
+    wary: NDArray[np.bool_]
+    """(m,) whether even a path within the face may have a shorter way round one of its corners."""
+    normal: FloatArray
+    """(m, 3) unit normals."""
+
+
 class Lattice(NamedTuple):
     """The nodes of a net and the edges between them, as a sweep fills them.
 

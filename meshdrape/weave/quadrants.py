@@ -10,13 +10,13 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.kernels.sweep import WARP, WEFT, edge_key, keep_edge, sweep
+from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, UNSURE, WARP, WEFT, edge_key, keep_edge, sweep
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.kernels.walk import off_mould
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
-from meshdrape.weave.settle import NodeSearch
+from meshdrape.weave.settle import NodeSearch, Place, shortest
 from meshdrape.weave.status import NodeStatus
 
 # A tile is large enough that handing it out costs nothing, small enough to keep both threads busy to the end.
@@ -73,16 +73,21 @@ def fill(
 
     def run(tile: _Tile) -> tuple[int, int]:
         span_i, span_j = spans[tile.si][0], spans[tile.sj][1]
-        report = np.zeros(4, dtype=np.int64)
+        report = np.zeros(5, dtype=np.int64)
         first_i = i0 + tile.si * (1 + tile.a * TILE)
         first_j = j0 + tile.sj * (1 + tile.b * TILE)
         count_i, count_j = min(TILE, span_i - tile.a * TILE), min(TILE, span_j - tile.b * TILE)
         settled = 0
         while not sweep(
-            mesh, lattice, bent.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
+            mesh, surface.detours, lattice, bent.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
             fabric.warp_spacing, fabric.weft_spacing, tolerance, slack, settle_every, report,
         ):  # fmt: skip
-            settled += _settle_node(surface, fabric, lattice, bent, int(report[2]), int(report[3]), tile, slack)
+            i, j, why = (int(v) for v in report[2:])
+            if why in (FREE_WARP, FREE_WEFT):
+                _judge_free(surface, fabric, lattice, i, j, tile, slack, WARP if why == FREE_WARP else WEFT)
+                continue
+            unsure = why == UNSURE and not settle_every
+            settled += _settle_node(surface, fabric, lattice, bent, i, j, tile, slack, unsure=unsure)
         return int(report[0]), settled
 
     waiting: dict[_Tile, int] = {}
@@ -135,6 +140,27 @@ class BentEdges:
             )
 
 
+def _judge_free(
+    surface: Surface, fabric: Fabric, lattice: Lattice, i: int, j: int, tile: _Tile, slack: float, family: int
+) -> None:
+    """Keep a node that one fibre alone holds, straight on, if libigl has no shorter way to it; else it ends there."""
+    parent = (i - tile.si, j) if family == WARP else (i, j - tile.sj)
+    length = fabric.warp_spacing if family == WARP else fabric.weft_spacing
+    if shortest(surface, _place(lattice, parent), _place(lattice, (i, j)), length):
+        _set_status(surface, lattice, (i, j), slack)
+    else:
+        lattice.status[i, j] = NodeStatus.OUTSIDE
+
+
+def _place(lattice: Lattice, at: tuple[int, int]) -> Place:
+    return int(lattice.face[at]), float(lattice.xy[at][0]), float(lattice.xy[at][1])
+
+
+def _set_status(surface: Surface, lattice: Lattice, at: tuple[int, int], slack: float) -> None:
+    off = off_mould(surface.unfolding, *_place(lattice, at), slack)
+    lattice.status[at] = NodeStatus.OFF_MOULD if off else NodeStatus.PLACED
+
+
 def _settle_node(
     surface: Surface,
     fabric: Fabric,
@@ -144,16 +170,26 @@ def _settle_node(
     j: int,
     tile: _Tile,
     slack: float,
+    *,
+    unsure: bool,
 ) -> bool:
-    """Have libigl place a node that straight paths did not close on; whether it did."""
+    """Have libigl place a node that straight paths did not close on, or judge one that it may reach by shorter ways.
 
-    def place(at: tuple[int, int]) -> tuple[int, float, float]:
-        return int(lattice.face[at]), float(lattice.xy[at][0]), float(lattice.xy[at][1])
-
+    Returns whether the node is now where libigl put it.
+    """
     a, b = (i - tile.si, j), (i, j - tile.sj)
-    search = NodeSearch(surface, place(a), place(b), fabric.warp_spacing, fabric.weft_spacing)
     # where the sweep gave up, it left the end of the warp edge's path
-    found = search.run(place((i, j)), float(tile.si * tile.sj))
+    guess = _place(lattice, (i, j))
+    ends = (_place(lattice, a), _place(lattice, b))
+    length = (fabric.warp_spacing, fabric.weft_spacing)
+    found = None
+    if unsure:
+        if all(shortest(surface, tail, guess, size) for tail, size in zip(ends, length, strict=True)):
+            _set_status(surface, lattice, (i, j), slack)
+            return False
+        found = NodeSearch(surface, *ends, *length, guess, narrow=True).run(guess, float(tile.si * tile.sj))
+    if found is None:
+        found = NodeSearch(surface, *ends, *length, guess).run(guess, float(tile.si * tile.sj))
     if found is None:
         if lattice.status[a] == NodeStatus.OFF_MOULD and lattice.status[b] == NodeStatus.OFF_MOULD:
             lattice.status[i, j] = NodeStatus.OUTSIDE
@@ -169,6 +205,5 @@ def _settle_node(
             kept = (lattice.warp_out, lattice.weft_out)[family]
             kept[at] *= 2.0 / np.linalg.norm(kept[at])
             bent.add(int(edge_key(lattice, family, *at)), np.concatenate([edge.leave, edge.arrive]))
-    off = off_mould(surface.unfolding, *found.place, slack)
-    lattice.status[i, j] = NodeStatus.OFF_MOULD if off else NodeStatus.PLACED
+    _set_status(surface, lattice, (i, j), slack)
     return True

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.geodesic.distance import exact_distances
+from meshdrape.geodesic.distance import exact_distances, surface_distance
 from meshdrape.geodesic.patch import Patch, faces_between
 from meshdrape.kernels.walk import WALKED, walk
 from meshdrape.surface import Surface, SurfacePoint
@@ -26,6 +26,8 @@ MAX_TRIALS = 30
 STEP = 1e-4
 # Straight paths that end this near to the node, in spacings, are the edges themselves.
 STRAIGHT = 1e-10
+# Paths up to this much longer than an edge are kept in view where the node is all but known.
+NARROW = 1.02
 
 
 @dataclass(frozen=True)
@@ -63,18 +65,28 @@ class NodeSearch:
         The parents in the frames of their faces, mm.
     warp, weft : float
         Spacing, mm.
+    guess : (face, x, y)
+        Where the node is expected.
+    narrow : bool
+        Look only where the shortest paths to the guess, and a little longer ones, can lie: quick, for a guess that is
+        all but right.
     """
 
-    def __init__(self, surface: Surface, a: Place, b: Place, warp: float, weft: float) -> None:
+    def __init__(
+        self, surface: Surface, a: Place, b: Place, warp: float, weft: float, guess: Place, *, narrow: bool = False
+    ) -> None:
         self.surface = surface
         self.a, self.b = a, b
         self.length = np.array([warp, weft])
         point_a, point_b = SurfacePoint.from_frame(surface, *a), SurfacePoint.from_frame(surface, *b)
-        # whatever lies within one spacing of either, and a margin for trial points beyond the node
-        reach = 1.2 * (warp + weft)
-        faces = np.union1d(
-            faces_between(surface, point_a, point_a, reach), faces_between(surface, point_b, point_b, reach)
-        )
+        if narrow:
+            node = SurfacePoint.from_frame(surface, *guess)
+            ways = ((point_a, node, NARROW * warp), (point_b, node, NARROW * weft))
+        else:
+            # whatever lies within one spacing of either, and a margin for trial points beyond the node
+            reach = 1.2 * (warp + weft)
+            ways = ((point_a, point_a, reach), (point_b, point_b, reach))
+        faces = np.union1d(*(faces_between(surface, *way) for way in ways))
         self.bare = Patch(surface, faces)
         self.patch = self.bare.copy()
         self.parents = [self.patch.insert(p.face, p.position(surface))[0] for p in (point_a, point_b)]
@@ -196,6 +208,13 @@ class NodeSearch:
             slope[axis] = (ends[0] - ends[1]) / (2 * step)
         size = float(np.linalg.norm(slope))
         return -slope / size if size > 0.1 else None
+
+
+def shortest(surface: Surface, tail: Place, head: Place, length: float) -> bool:
+    """Whether no way between two places is shorter than the edge of a given length (mm) that joins them."""
+    ends = [SurfacePoint.from_frame(surface, *place) for place in (tail, head)]
+    distance, moved = surface_distance(surface, ends[0], ends[1], bound=length * (1 + 1e-6))
+    return distance >= length * (1 - MET) - moved
 
 
 def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
