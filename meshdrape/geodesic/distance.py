@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import StartError
 from meshdrape.geodesic.patch import Patch, faces_between
+from meshdrape.geodesic.screen import screened
 from meshdrape.surface import Surface, SurfacePoint
 
 if TYPE_CHECKING:
@@ -26,24 +27,34 @@ FloatArray = NDArray[np.float64]
 
 
 def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray:
-    """Shortest distances on a patch from one vertex to others, mm.
+    """Shortest distances on a patch from one vertex to others, mm; infinite where libigl cannot tell.
 
     References
     ----------
     Mitchell, Mount, Papadimitriou, The discrete geodesic problem, SIAM J. Comput. 16 (1987); libigl's exact_geodesic.
     """
+    return _screened_distances(patch, source, targets)[0]
+
+
+def _screened_distances(patch: Patch, source: int, targets: list[int]) -> tuple[FloatArray, float]:
+    """Those distances, and how much the triangles left out may have changed them, mm."""
     import igl
 
     vertices, faces = patch.arrays()
+    clean = screened(vertices, faces)
+    if clean is None:
+        return np.full(len(targets), np.inf), 0.0
     # libigl reads 0 at vertices that no face uses: hand it none
-    used, compact = np.unique(faces, return_inverse=True)
-    vertices, faces = vertices[used], compact.reshape(-1, 3)
-    ends = np.searchsorted(used, [source, *targets])
+    used, compact = np.unique(clean.faces, return_inverse=True)
+    ends = clean.image[[source, *targets]]
+    if not np.isin(ends, used).all():
+        return np.full(len(targets), np.inf), 0.0
+    ends = np.searchsorted(used, ends)
     try:
         # all by keyword: given positionally without targets the binding returns an empty array, silently
         found = igl.exact_geodesic(
-            V=vertices,
-            F=faces,
+            V=vertices[used],
+            F=compact.reshape(-1, 3),
             VS=ends[:1],
             FS=np.empty(0, dtype=np.int64),
             VT=ends[1:],
@@ -51,8 +62,8 @@ def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray
         )
     except MemoryError:
         # on a patch of needles its windows may multiply without end: it does not know
-        return np.full(len(targets), np.inf)
-    return np.asarray(found, dtype=np.float64)
+        return np.full(len(targets), np.inf), 0.0
+    return np.asarray(found, dtype=np.float64), clean.moved
 
 
 def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike) -> float:
@@ -127,4 +138,5 @@ def _on_patch(patch: Patch, surface: Surface, a: SurfacePoint, b: SurfacePoint) 
         return float("inf"), 0.0
     if start == end:
         return 0.0, moved_a + moved_b
-    return float(exact_distances(patch, start, [end])[0]), moved_a + moved_b
+    found, moved = _screened_distances(patch, start, [end])
+    return float(found[0]), moved_a + moved_b + moved
