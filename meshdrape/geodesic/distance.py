@@ -1,4 +1,4 @@
-"""Exact polyhedral distances, through libigl; the only module that imports it."""
+"""Exact polyhedral distances, through libigl."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshdrape.errors import StartError
+from meshdrape.errors import MouldError, StartError
+from meshdrape.geodesic.guarded import solve, solve_guarded
 from meshdrape.geodesic.patch import Patch, faces_between
-from meshdrape.geodesic.screen import screened
+from meshdrape.geodesic.screen import DOUBTFUL, screened
 from meshdrape.surface import Surface, SurfacePoint
 
 if TYPE_CHECKING:
@@ -38,32 +39,21 @@ def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray
 
 def _screened_distances(patch: Patch, source: int, targets: list[int]) -> tuple[FloatArray, float]:
     """Those distances, and how much the triangles left out may have changed them, mm."""
-    import igl
-
     vertices, faces = patch.arrays()
     clean = screened(vertices, faces)
-    if clean is None:
-        return np.full(len(targets), np.inf), 0.0
+    ends = np.array([source, *targets]) if clean is None else clean.image[[source, *targets]]
     # libigl reads 0 at vertices that no face uses: hand it none
-    used, compact = np.unique(clean.faces, return_inverse=True)
-    ends = clean.image[[source, *targets]]
-    if not np.isin(ends, used).all():
+    used, compact = np.unique(faces if clean is None else clean.faces, return_inverse=True)
+    if clean is None or not np.isin(ends, used).all():
         return np.full(len(targets), np.inf), 0.0
-    ends = np.searchsorted(used, ends)
+    first, *others = np.searchsorted(used, ends).tolist()
+    mesh = vertices[used], compact.reshape(-1, 3)
+    solver = solve_guarded if clean.lowest < DOUBTFUL else solve
     try:
-        # all by keyword: given positionally without targets the binding returns an empty array, silently
-        found = igl.exact_geodesic(
-            V=vertices[used],
-            F=compact.reshape(-1, 3),
-            VS=ends[:1],
-            FS=np.empty(0, dtype=np.int64),
-            VT=ends[1:],
-            FT=np.empty(0, dtype=np.int64),
-        )
+        return solver(*mesh, first, np.array(others)), clean.moved
     except MemoryError:
-        # on a patch of needles its windows may multiply without end: it does not know
+        # its windows may multiply without end: it does not know
         return np.full(len(targets), np.inf), 0.0
-    return np.asarray(found, dtype=np.float64), clean.moved
 
 
 def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike) -> float:
@@ -80,6 +70,8 @@ def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike)
     ------
     StartError
         If a point is not three finite numbers, or the points lie on separate parts of the mould.
+    MouldError
+        If libigl comes to no end on the mesh between them.
     """
     surface = mould.surface
     ends = []
@@ -93,7 +85,11 @@ def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike)
     if surface.face_component[a.face] != surface.face_component[b.face]:
         msg = f"the points lie on separate parts of the mould (faces {a.face} and {b.face}): no path joins them"
         raise StartError(msg)
-    return surface_distance(surface, a, b)[0]
+    distance, _ = surface_distance(surface, a, b)
+    if not np.isfinite(distance):
+        msg = f"libigl cannot measure from face {a.face} to face {b.face}: flat triangles between; repair with --heal"
+        raise MouldError(msg)
+    return distance
 
 
 def surface_distance(

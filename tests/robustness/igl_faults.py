@@ -165,8 +165,9 @@ def _functions(fault: Fault, folder: Path) -> Iterator[tuple[str, Callable[[], o
     yield "Surface.from_arrays", lambda: len(Surface.from_arrays(mesh.vertices, mesh.triangles).faces)
     for suffix in (".obj", ".ply", ".off", ".stl"):
         yield f"read_mould {suffix}", lambda s=suffix: len(meshdrape.read_mould(_written(mesh, s, folder)).triangles)
-        yield f"geodesic_distance {suffix}", lambda s=suffix: meshdrape.geodesic_distance(
-            meshdrape.read_mould(_written(mesh, s, folder)), a, b
+        yield (
+            f"geodesic_distance {suffix}",
+            lambda s=suffix: meshdrape.geodesic_distance(meshdrape.read_mould(_written(mesh, s, folder)), a, b),
         )
     yield "geodesic_distance", lambda: meshdrape.geodesic_distance(mould(), a, b)
     yield "drape fast", lambda: _drape(mould(), fault, "fast")

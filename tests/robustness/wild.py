@@ -141,9 +141,10 @@ def few_triangles(rng: Generator) -> Mesh:
     """One to eight triangles about a vertex."""
     n = int(rng.integers(1, 9))
     azimuth = np.linspace(0, rng.uniform(0.3, 5.5), n + 1)
-    rim = np.stack([np.cos(azimuth), np.sin(azimuth), rng.uniform(-0.5, 0.5, n + 1)], 1) * rng.uniform(40, 120, n + 1)[
-        :, None
-    ]
+    rim = (
+        np.stack([np.cos(azimuth), np.sin(azimuth), rng.uniform(-0.5, 0.5, n + 1)], 1)
+        * rng.uniform(40, 120, n + 1)[:, None]
+    )
     k = np.arange(n)
     return Mesh(np.concatenate([np.zeros((1, 3)), rim]), np.stack([np.zeros(n, dtype=int), 1 + k, 2 + k], axis=1))
 
@@ -275,9 +276,7 @@ class WildDrape:
             reach = spacing * min(np.sqrt(most_nodes), 40) / 2
             extent = tuple(float(v) for v in reach * rng.uniform(0.3, 1.0, 4))
         angle = np.pi / 2 if rng.random() < 0.6 else float(rng.uniform(np.radians(25), np.radians(155)))
-        return cls(
-            kind, number, mesh, (spacing, spacing * ratio), weight @ corners[face], direction, angle, extent
-        )
+        return cls(kind, number, mesh, (spacing, spacing * ratio), weight @ corners[face], direction, angle, extent)
 
     def fabric(self) -> meshdrape.Fabric:
         return meshdrape.Fabric(self.spacing, initial_angle=self.initial_angle)
