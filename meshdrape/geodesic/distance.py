@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshdrape.errors import MouldError, StartError
 from meshdrape.geodesic.guarded import solve, solve_guarded
 from meshdrape.geodesic.patch import Patch, faces_between
-from meshdrape.geodesic.screen import DOUBTFUL, screened
+from meshdrape.geodesic.screen import DOUBTFUL, LOWEST, SAFE, screened
 from meshdrape.surface import Surface, SurfacePoint
 
 if TYPE_CHECKING:
@@ -40,20 +40,21 @@ def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray
 def _screened_distances(patch: Patch, source: int, targets: list[int]) -> tuple[FloatArray, float]:
     """Those distances, and how much the triangles left out may have changed them, mm."""
     vertices, faces = patch.arrays()
-    clean = screened(vertices, faces)
-    ends = np.array([source, *targets]) if clean is None else clean.image[[source, *targets]]
-    # libigl reads 0 at vertices that no face uses: hand it none
-    used, compact = np.unique(faces if clean is None else clean.faces, return_inverse=True)
-    if clean is None or not np.isin(ends, used).all():
-        return np.full(len(targets), np.inf), 0.0
-    first, *others = np.searchsorted(used, ends).tolist()
-    mesh = vertices[used], compact.reshape(-1, 3)
-    solver = solve_guarded if clean.lowest < DOUBTFUL else solve
-    try:
-        return solver(*mesh, first, np.array(others)), clean.moved
-    except MemoryError:
-        # its windows may multiply without end: it does not know
-        return np.full(len(targets), np.inf), 0.0
+    for lowest in (LOWEST, SAFE):
+        clean = screened(vertices, faces, lowest)
+        if clean is None:
+            continue
+        # libigl reads 0 at vertices that no face uses: hand it none
+        used, compact = np.unique(clean.faces, return_inverse=True)
+        ends = clean.image[[source, *targets]]
+        if not np.isin(ends, used).all():
+            continue
+        first, *others = np.searchsorted(used, ends).tolist()
+        solver = solve_guarded if clean.lowest < DOUBTFUL else solve
+        found = solver(vertices[used], compact.reshape(-1, 3), first, np.array(others))
+        if np.isfinite(found).all():
+            return found, clean.moved
+    return np.full(len(targets), np.inf), 0.0
 
 
 def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike) -> float:

@@ -15,10 +15,13 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Lowest height of a triangle, in longest sides, that goes to libigl: one in seventy meshes made it hang at 1e-7.
-LOWEST = 1e-6
-# Below this it may hang, if seldom: of 10,000 meshes with a triangle as low as 1e-4 to 1e-6 twelve did, above none.
+# Lowest height of a triangle, in longest sides, that goes to libigl as it is.
+LOWEST = 1e-8
+# Below this libigl may go on for ever: of 10,000 meshes with a triangle as low as 1e-4 to 1e-6 twelve made it, of those
+# with one of 1e-7 one in seventy, of those above 1e-4 none.
 DOUBTFUL = 1e-3
+# Where it did, a mesh without triangles as low as this is the next best.
+SAFE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +46,7 @@ class Screened:
     lowest: float
 
 
-def screened(vertices: FloatArray, faces: IntArray) -> Screened | None:
+def screened(vertices: FloatArray, faces: IntArray, lowest: float = LOWEST) -> Screened | None:
     """The mesh without its flat triangles; None where they cannot be taken out of it.
 
     Parameters
@@ -51,6 +54,8 @@ def screened(vertices: FloatArray, faces: IntArray) -> Screened | None:
     vertices : (n, 3), mm
     faces : (m, 3)
         Manifold, oriented.
+    lowest : float
+        Height, in longest sides, from which on a triangle may stay.
     """
     image = np.arange(len(vertices))
     moved = 0.0
@@ -60,14 +65,14 @@ def screened(vertices: FloatArray, faces: IntArray) -> Screened | None:
             return None
         heights = relative_heights(vertices, faces)
         flat = int(np.argmin(heights))
-        if heights[flat] >= LOWEST:
+        if heights[flat] >= lowest:
             whole = moved == 0.0 or _is_manifold(faces)
             return Screened(faces, image, moved, float(heights[flat])) if whole else None
         corners = vertices[faces[flat]]
         sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
         longest, shortest = int(np.argmax(sides)), int(np.argmin(sides))
         # a vertex as near to a corner as that splits off another flat triangle
-        if sides[shortest] <= 2 * LOWEST * sides[longest]:
+        if sides[shortest] <= 2 * lowest * sides[longest]:
             gone, kept = int(faces[flat, (shortest + 1) % 3]), int(faces[flat, shortest])
             faces = np.where(faces == gone, kept, faces)
             faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
@@ -87,7 +92,8 @@ def relative_heights(vertices: FloatArray, faces: IntArray) -> FloatArray:
     u, v, w = b - a, c - a, c - b
     longest2 = np.maximum(np.maximum(_squares(u), _squares(v)), _squares(w))
     double2 = _squares(np.cross(u, v))
-    return np.sqrt(np.divide(double2, longest2 * longest2, out=np.zeros_like(double2), where=longest2 > 0))
+    squared = np.divide(double2, longest2 * longest2, out=np.zeros_like(double2), where=longest2 > 0)
+    return np.asarray(np.sqrt(squared))
 
 
 def _squares(vectors: FloatArray) -> FloatArray:
