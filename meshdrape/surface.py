@@ -87,9 +87,11 @@ class Surface:
         """
         vertices = np.array(vertices, dtype=np.float64)
         faces = np.array(faces, dtype=np.int64)
-        if not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):
-            reach = f"vertices {faces.min()} to {faces.max()}" if len(faces) else "no vertices: there are none"
-            msg = f"triangles use {reach}, but must be some and use vertices 0 to {len(vertices) - 1}"
+        if not len(faces):
+            msg = "the surface has no triangles; it needs at least one"
+            raise MouldError(msg)
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            msg = f"triangles use vertices {faces.min()} to {faces.max()} but there are 0 to {len(vertices) - 1}"
             raise MouldError(msg)
         if not np.isfinite(vertices).all():
             msg = f"vertex {int(np.argmin(np.isfinite(vertices).all(axis=1)))} is not finite; export the mesh anew"

@@ -134,7 +134,7 @@ def torus(rng: Generator) -> Mesh:
 def two_parts(rng: Generator) -> Mesh:
     """Two of the others, apart from one another."""
     first, second = (KINDS[str(rng.choice(["bumpy grid", "noisy sphere", "needle fan", "slivers"]))](rng) for _ in "ab")
-    return first.joined(Mesh(second.vertices + [0, 0, rng.uniform(300, 600)], second.triangles))
+    return first.joined(second.moved(np.eye(3), (0, 0, rng.uniform(300, 600))))
 
 
 def few_triangles(rng: Generator) -> Mesh:
@@ -162,10 +162,10 @@ def creased(rng: Generator) -> Mesh:
 
 def flat_grid(rng: Generator) -> Mesh:
     """A plate whose edges run along the axes: fibres along edges and through vertices."""
-    return plate(cells=(int(rng.integers(1, 12)), int(rng.integers(1, 12))), jitter_seed=0) if rng.random() < 0.3 else grid(
-        np.linspace(-100, 100, int(rng.integers(2, 12))), np.linspace(-70, 70, int(rng.integers(2, 12))),
-        lambda x, y: (x, y, 0),
-    )  # fmt: skip
+    n, m = (int(k) for k in rng.integers(1, 12, 2))
+    if rng.random() < 0.3:
+        return plate(cells=(n, m), jitter_seed=0)
+    return grid(np.linspace(-100, 100, n + 1), np.linspace(-70, 70, m + 1), lambda x, y: (x, y, 0))
 
 
 KINDS: dict[str, Callable[[Generator], Mesh]] = {
@@ -247,7 +247,7 @@ class WildDrape:
 
     @classmethod
     def drawn(cls, kind: str, number: int, most_nodes: int = 1500) -> WildDrape:
-        """Spacing from a hundredth of a triangle to a hundred triangles, as far as the mould and `most_nodes` let it."""
+        """Spacing from a hundredth of a triangle to a hundred triangles, if the mould and `most_nodes` let it."""
         rng = np.random.default_rng([sorted(KINDS).index(kind), number])
         mesh = KINDS[kind](rng)
         turn = rotation(rng.standard_normal(3), rng.uniform(0, np.pi)) if rng.random() < 0.5 else np.eye(3)
@@ -269,7 +269,7 @@ class WildDrape:
             weight /= weight.sum()
         elif where < 0.4:
             weight = np.array([1 - 2e-9, 1e-9, 1e-9])[rng.permutation(3)]
-        a, b, c = corners[face]
+        a, b, _ = corners[face]
         direction = rng.standard_normal(3) if rng.random() < 0.6 else (b - a)
         extent = None
         if area / spacing**2 > most_nodes or rng.random() < 0.2:
