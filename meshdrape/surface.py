@@ -90,10 +90,20 @@ class Surface:
         Raises
         ------
         MouldError
-            If an edge has more than two triangles, or two triangles that run round it the same way.
+            If there are no triangles, an index is out of range, a coordinate is not finite, or an edge has more than
+            two triangles, or two that run round it the same way.
         """
         vertices = np.array(vertices, dtype=np.float64)
         faces = np.array(faces, dtype=np.int64)
+        if not len(faces):
+            msg = "the surface has no triangles; it needs at least one"
+            raise MouldError(msg)
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            msg = f"triangles use vertices {faces.min()} to {faces.max()} but there are 0 to {len(vertices) - 1}"
+            raise MouldError(msg)
+        if not np.isfinite(vertices).all():
+            msg = f"vertex {int(np.argmin(np.isfinite(vertices).all(axis=1)))} is not finite; export the mesh anew"
+            raise MouldError(msg)
         neighbour = _neighbours(faces, len(vertices))
         rim = _rim(faces, neighbour, len(faces) if n_mould_faces is None else n_mould_faces)
         for array in (vertices, faces, neighbour, rim):

@@ -1,4 +1,4 @@
-"""Exact polyhedral distances, through libigl; the only module that imports it."""
+"""Exact polyhedral distances, through libigl."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshdrape.errors import StartError
+from meshdrape.errors import MouldError, StartError
+from meshdrape.geodesic.guarded import solve, solve_guarded
 from meshdrape.geodesic.patch import Patch, faces_between
+from meshdrape.geodesic.screen import DOUBTFUL, LOWEST, SAFE, screened
 from meshdrape.surface import Surface, SurfacePoint
 
 if TYPE_CHECKING:
@@ -26,33 +28,33 @@ FloatArray = NDArray[np.float64]
 
 
 def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray:
-    """Shortest distances on a patch from one vertex to others, mm.
+    """Shortest distances on a patch from one vertex to others, mm; infinite where libigl cannot tell.
 
     References
     ----------
     Mitchell, Mount, Papadimitriou, The discrete geodesic problem, SIAM J. Comput. 16 (1987); libigl's exact_geodesic.
     """
-    import igl
+    return _screened_distances(patch, source, targets)[0]
 
+
+def _screened_distances(patch: Patch, source: int, targets: list[int]) -> tuple[FloatArray, float]:
+    """Those distances, and how much the triangles left out may have changed them, mm."""
     vertices, faces = patch.arrays()
-    # libigl reads 0 at vertices that no face uses: hand it none
-    used, compact = np.unique(faces, return_inverse=True)
-    vertices, faces = vertices[used], compact.reshape(-1, 3)
-    ends = np.searchsorted(used, [source, *targets])
-    try:
-        # all by keyword: given positionally without targets the binding returns an empty array, silently
-        found = igl.exact_geodesic(
-            V=vertices,
-            F=faces,
-            VS=ends[:1],
-            FS=np.empty(0, dtype=np.int64),
-            VT=ends[1:],
-            FT=np.empty(0, dtype=np.int64),
-        )
-    except MemoryError:
-        # on a patch of needles its windows may multiply without end: it does not know
-        return np.full(len(targets), np.inf)
-    return np.asarray(found, dtype=np.float64)
+    for lowest in (LOWEST, SAFE):
+        clean = screened(vertices, faces, lowest)
+        if clean is None:
+            continue
+        # libigl reads 0 at vertices that no face uses: hand it none
+        used, compact = np.unique(clean.faces, return_inverse=True)
+        ends = clean.image[[source, *targets]]
+        if not np.isin(ends, used).all():
+            continue
+        first, *others = np.searchsorted(used, ends).tolist()
+        solver = solve_guarded if clean.lowest < DOUBTFUL else solve
+        found = solver(vertices[used], compact.reshape(-1, 3), first, np.array(others))
+        if np.isfinite(found).all():
+            return found, clean.moved
+    return np.full(len(targets), np.inf), 0.0
 
 
 def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike) -> float:
@@ -69,6 +71,8 @@ def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike)
     ------
     StartError
         If a point is not three finite numbers, or the points lie on separate parts of the mould.
+    MouldError
+        If libigl comes to no end on the mesh between them.
     """
     surface = mould.surface
     ends = []
@@ -82,7 +86,11 @@ def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike)
     if surface.face_component[a.face] != surface.face_component[b.face]:
         msg = f"the points lie on separate parts of the mould (faces {a.face} and {b.face}): no path joins them"
         raise StartError(msg)
-    return surface_distance(surface, a, b)[0]
+    distance, _ = surface_distance(surface, a, b)
+    if not np.isfinite(distance):
+        msg = f"libigl cannot measure from face {a.face} to face {b.face}: flat triangles between; repair with --heal"
+        raise MouldError(msg)
+    return distance
 
 
 def surface_distance(
@@ -127,4 +135,5 @@ def _on_patch(patch: Patch, surface: Surface, a: SurfacePoint, b: SurfacePoint) 
         return float("inf"), 0.0
     if start == end:
         return 0.0, moved_a + moved_b
-    return float(exact_distances(patch, start, [end])[0]), moved_a + moved_b
+    found, moved = _screened_distances(patch, start, [end])
+    return float(found[0]), moved_a + moved_b + moved

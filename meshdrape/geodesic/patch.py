@@ -11,9 +11,9 @@ from meshdrape.surface import Surface, SurfacePoint
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# libigl's solver may hang on a height below 1e-8 of a triangle's sides; at 1e-7 it never did. A point nearer than this
-# to a vertex or an edge, relative to the triangle, becomes that vertex or splits that edge.
-SNAP = 1e-7
+# A point nearer than this to a vertex or an edge, relative to the triangle, is on it but for round-off. Triangles that
+# come out flat all the same are seen to by :mod:`meshdrape.geodesic.screen`.
+SNAP = 1e-12
 
 
 class Patch:
@@ -121,9 +121,10 @@ class Patch:
     def _barycentric(self, n: int, p: FloatArray) -> FloatArray:
         a, b, c = (self._vertices[v] for v in self._faces[n])
         u, v, w = b - a, c - a, p - a
-        uu, uv, vv, wu, wv = u @ u, u @ v, v @ v, w @ u, w @ v
-        area2 = uu * vv - uv * uv
-        beta, gamma = (vv * wu - uv * wv) / area2, (uu * wv - uv * wu) / area2
+        # by cross products: of a needle, products of lengths would leave nothing but round-off
+        normal = np.cross(u, v)
+        double2 = normal @ normal
+        beta, gamma = np.cross(w, v) @ normal / double2, np.cross(u, w) @ normal / double2
         return np.array([1 - beta - gamma, beta, gamma])
 
     def _split_edge(self, n: int, u: int, v: int, new: int) -> None:

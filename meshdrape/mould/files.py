@@ -1,4 +1,4 @@
-"""The file a mould comes in, before anyone reads it."""
+"""The file a mould comes in, before anyone reads it, and what is said of one that nobody can."""
 
 import hashlib
 import os
@@ -29,6 +29,12 @@ def existing_file(path: str | os.PathLike[str]) -> Path:
         msg = f"{file} is empty; export the mould anew"
         raise FileError(msg)
     return file
+
+
+def brief(error: object) -> str:
+    """Return an error's message in one line of at most 200 characters, for it may quote the file at any length."""
+    text = " ".join(str(error).split()) or "no reason given"
+    return text if len(text) <= 200 else f"{text[:196]} ..."
 
 
 def file_sha256(path: str | os.PathLike[str]) -> str:

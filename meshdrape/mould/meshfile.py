@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from meshdrape.errors import FileError, MouldError
 from meshdrape.mould.check import counted
-from meshdrape.mould.files import existing_file, file_sha256
+from meshdrape.mould.files import brief, existing_file, file_sha256
 from meshdrape.mould.formats.obj import read_obj
 from meshdrape.mould.formats.off import read_off
 from meshdrape.mould.formats.ply import read_ply
@@ -155,6 +155,5 @@ def _polygons(file: Path, read: Callable[[bytes], Polygons]) -> Polygons:
         msg = f"{file} cannot be read: {error.strerror}"
         raise FileError(msg) from error
     except (ValueError, OverflowError) as error:
-        reason = " ".join(str(error).split())
-        msg = f"{file} is not a whole {kind} file ({reason}); export it anew"
+        msg = f"{file} is not a whole {kind} file ({brief(error)}); export it anew"
         raise FileError(msg) from error

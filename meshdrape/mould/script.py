@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import FileError
+from meshdrape.mould.files import brief
 from meshdrape.mould.shape import NamedShape, cadquery_module, of_shape
 
 
@@ -32,7 +33,7 @@ def run_script(path: Path, parameters: Mapping[str, Any] | None = None) -> Named
         model = cqgi.parse(path.read_text(encoding="utf-8"))
     except (SyntaxError, UnicodeDecodeError, ValueError) as error:
         line = f", line {error.lineno}" if isinstance(error, SyntaxError) else ""
-        msg = f"{path}{line} is not a Python script: {_one_line(error)}"
+        msg = f"{path}{line} is not a Python script: {brief(error)}"
         raise FileError(msg) from error
     known = model.metadata.parameters
     values = {}
@@ -50,7 +51,7 @@ def run_script(path: Path, parameters: Mapping[str, Any] | None = None) -> Named
         raise FileError(msg) from error
     if not result.success:
         raised = result.exception
-        msg = f"{path}{_line_of(raised)} failed: {type(raised).__name__}: {_one_line(raised)}"
+        msg = f"{path}{_line_of(raised)} failed: {type(raised).__name__}: {brief(raised)}"
         raise FileError(msg)
     shapes = [shape for shown in result.results for shape in _shapes(cq, shown.shape)]
     if not shapes:
@@ -107,6 +108,3 @@ def _line_of(error: BaseException | None) -> str:
         trace = trace.tb_next
     return f", line {line}," if line else ""
 
-
-def _one_line(error: object) -> str:
-    return " ".join(str(error).split()) or "no reason given"

@@ -39,7 +39,8 @@ def welded_along_borders(vertices: Floats, triangles: Ints) -> tuple[Floats, Int
     unique, count = np.unique(key, return_counts=True)
     border = np.unique(np.concatenate(np.divmod(unique[count == 1], len(vertices))))
     points = vertices[border]
-    if not len(border) or not np.isfinite(points).all():
+    # what is not finite, or so large that its square is not, is reported later
+    if not len(border) or not (np.abs(points) < 1e150).all():
         return vertices, triangles
     pairs = cKDTree(points).query_pairs(ROUND_OFF * float(np.abs(points).max()), output_type="ndarray")
     a, b = np.sort(border[pairs], axis=1).T

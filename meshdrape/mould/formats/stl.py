@@ -37,7 +37,8 @@ def read_stl(content: bytes) -> Polygons:
 
 def _binary(content: bytes) -> Polygons:
     corner = np.frombuffer(content, dtype=_FACET, offset=_HEADER)["corner"]
-    return _of_corners(corner.reshape(-1, 3).astype(np.float64))
+    with np.errstate(invalid="ignore"):  # noise may hold a NaN that signals; it is reported later, as what it is
+        return _of_corners(corner.reshape(-1, 3).astype(np.float64))
 
 
 def _text(content: bytes) -> Polygons:
