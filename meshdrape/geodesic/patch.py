@@ -50,6 +50,17 @@ class Patch:
             return cls(surface, faces)
         return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius)
 
+    @classmethod
+    def within(cls, surface: Surface, faces: IntArray, ends: tuple[SurfacePoint, ...], reach: float) -> Patch:
+        """A patch that holds whatever of the faces lies within `reach` (mm) of one of the end points, in space."""
+        places = np.array([end.position(surface) for end in ends])
+        centre = 0.5 * (places.min(axis=0) + places.max(axis=0))
+        radius = 1.1 * (reach + float(np.linalg.norm(places - centre, axis=1).max()))
+        corners = surface.vertices[surface.faces[faces]]
+        if float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()) <= 8 * radius:
+            return cls(surface, faces)
+        return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius)
+
     def _add(self, face: int, triangle: tuple[int, int, int]) -> None:
         self._pieces.setdefault(face, []).append(len(self._faces))
         self._faces.append(triangle)
@@ -178,12 +189,7 @@ def _cut(
         inside = [end.position(surface) for end in ends if end.face == face and end.barycentric.min() > SNAP]
         first = len(patch._vertices)
         frame = surface.unfolding.frame[face]
-        if not ring and inside:
-            # the ball meets no edge: an octagon in it lies within the face and holds both ends
-            turns = np.arange(8) * (np.pi / 4)
-            around = np.outer(np.cos(turns), frame[3:6]) + np.outer(np.sin(turns), frame[6:9])
-            inside += list(inside[0] + (centre - inside[0]) @ frame[3:6] * frame[3:6]
-                           + (centre - inside[0]) @ frame[6:9] * frame[6:9] + radius * around)  # fmt: skip
+        inside += _ball_outline(surface, face, centre, radius)
         # an end on an edge gives the face some depth, lest nothing be left of it but that edge
         middle = surface.vertices[surface.faces[face]].mean(axis=0)
         for end in ends:
@@ -197,6 +203,23 @@ def _cut(
         for n in range(1, len(hull) - 1):
             patch._add(face, (hull[0], hull[n], hull[n + 1]))
     return patch
+
+
+def _ball_outline(surface: Surface, face: int, centre: FloatArray, radius: float) -> list[FloatArray]:
+    """Points, sixteen at most, in which the plane of a face cuts the surface of a ball, well inside the face."""
+    frame = surface.unfolding.frame[face]
+    off = centre - frame[:3]
+    foot = frame[:3] + off @ frame[3:6] * frame[3:6] + off @ frame[6:9] * frame[6:9]
+    across2 = radius * radius - float((centre - foot) @ (centre - foot))
+    if across2 <= 0:
+        return []
+    turns = np.arange(16) * (np.pi / 8)
+    rim = foot + np.sqrt(across2) * (np.outer(np.cos(turns), frame[3:6]) + np.outer(np.sin(turns), frame[6:9]))
+    a, b, c = surface.vertices[surface.faces[face]]
+    normal = np.cross(b - a, c - a)
+    size = float(np.linalg.norm(normal))
+    heights = [np.cross(e - s, rim - s) @ normal / size / np.linalg.norm(e - s) for s, e in ((a, b), (b, c), (c, a))]
+    return list(rim[np.min(heights, axis=0) > 0.05 * radius])
 
 
 def _kept_piece(u: FloatArray, v: FloatArray, centre: FloatArray, radius: float) -> tuple[float, float] | None:

@@ -16,6 +16,7 @@ from meshdrape.kernels.walk import off_mould
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
+from meshdrape.weave.scan import scan
 from meshdrape.weave.settle import NodeSearch, Place, shortest
 from meshdrape.weave.status import NodeStatus
 
@@ -182,17 +183,22 @@ def _settle_node(
     guess = _place(lattice, (i, j))
     ends = (_place(lattice, a), _place(lattice, b))
     length = (fabric.warp_spacing, fabric.weft_spacing)
+    side = float(tile.si * tile.sj)
     found = None
     if unsure:
         if all(shortest(surface, tail, guess, size) for tail, size in zip(ends, length, strict=True)):
             _set_status(surface, lattice, (i, j), slack)
             return False
-        found = NodeSearch(surface, *ends, *length, guess, narrow=True).run(guess, float(tile.si * tile.sj))
+        found = NodeSearch(surface, *ends, *length, guess, narrow=True).run(guess, side)
     if found is None:
-        found = NodeSearch(surface, *ends, *length, guess).run(guess, float(tile.si * tile.sj))
+        search = NodeSearch(surface, *ends, *length, guess)
+        found = search.run(guess, side)
+        beyond = lattice.status[a] == NodeStatus.OFF_MOULD and lattice.status[b] == NodeStatus.OFF_MOULD
+        if found is None and not beyond:
+            found = scan(search, _place(lattice, (i - tile.si, j - tile.sj)), guess, side)
     if found is None:
-        if lattice.status[a] == NodeStatus.OFF_MOULD and lattice.status[b] == NodeStatus.OFF_MOULD:
-            lattice.status[i, j] = NodeStatus.OUTSIDE
+        # the extension is no mould: what fails on it is lost to it, not to the cloth
+        lattice.status[i, j] = NodeStatus.OUTSIDE if beyond else NodeStatus.FOLDED
         return False
     lattice.face[i, j], lattice.xy[i, j] = found.place[0], found.place[1:]
     for family, edge, parent, step in (

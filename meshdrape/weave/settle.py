@@ -79,15 +79,15 @@ class NodeSearch:
         self.a, self.b = a, b
         self.length = np.array([warp, weft])
         point_a, point_b = SurfacePoint.from_frame(surface, *a), SurfacePoint.from_frame(surface, *b)
+        node = SurfacePoint.from_frame(surface, *guess)
+        # whatever lies within one spacing of either, and a margin for trial points beyond the node
+        reach = 1.2 * (warp + weft)
         if narrow:
-            node = SurfacePoint.from_frame(surface, *guess)
             ways = ((point_a, node, NARROW * warp), (point_b, node, NARROW * weft))
         else:
-            # whatever lies within one spacing of either, and a margin for trial points beyond the node
-            reach = 1.2 * (warp + weft)
             ways = ((point_a, point_a, reach), (point_b, point_b, reach))
         faces = np.union1d(*(faces_between(surface, *way) for way in ways))
-        self.bare = Patch(surface, faces)
+        self.bare = Patch.within(surface, faces, (point_a, point_b, node), 0.55 * reach)
         self.patch = self.bare.copy()
         self.parents = [self.patch.insert(p.face, p.position(surface))[0] for p in (point_a, point_b)]
 
@@ -117,7 +117,7 @@ class NodeSearch:
     def distances(self, place: Place) -> FloatArray | None:
         """Shortest distances (2,) from a place to A and to B, mm; None where it lies off the patch."""
         trial = self.patch.copy()
-        vertex = _insert(trial, self.surface, place)
+        vertex = insert(trial, self.surface, place)
         return None if vertex is None else exact_distances(trial, vertex, self.parents)
 
     def _meet(self, guess: Place) -> Place | None:
@@ -200,8 +200,8 @@ class NodeSearch:
             for sense in (step, -step):
                 near = step_from(self.surface, parent, sense * np.eye(2)[axis])
                 trial = self.bare.copy()
-                source = None if near is None else _insert(trial, self.surface, near)
-                target = _insert(trial, self.surface, place)
+                source = None if near is None else insert(trial, self.surface, near)
+                target = insert(trial, self.surface, place)
                 if source is None or target is None:
                     return None
                 ends.append(float(exact_distances(trial, source, [target])[0]))
@@ -228,7 +228,8 @@ def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
     return (int(face), x + length * dx, y + length * dy) if code == WALKED else None
 
 
-def _insert(patch: Patch, surface: Surface, place: Place) -> int | None:
+def insert(patch: Patch, surface: Surface, place: Place) -> int | None:
+    """Make a place a vertex of a patch; None where the patch does not hold it."""
     try:
         return patch.insert(place[0], SurfacePoint.from_frame(surface, *place).position(surface))[0]
     except KeyError:

@@ -1,0 +1,103 @@
+"""All nodes there can be: the circle about one parent scanned for points at one spacing from the other.
+
+A search from a first guess may miss a node that exists. Where the scan finds none either, the cloth folds there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshdrape.geodesic.distance import exact_distances
+from meshdrape.surface import SurfacePoint
+from meshdrape.weave.settle import NodeSearch, Place, Settled, insert, step_from
+
+FloatArray = NDArray[np.float64]
+
+# Directions tried about a parent, and halvings of the angle between two where the distance passes the spacing.
+DIRECTIONS = 72
+HALVINGS = 12
+# A path that libigl finds shorter than the circle's radius by more than this share is no radius.
+NO_RADIUS = 1e-9
+# A point this near to the cell's known corner, in spacings, is that corner.
+SAME = 1e-3
+
+
+def scan(search: NodeSearch, corner: Place, guess: Place, side: float) -> Settled | None:
+    """The node nearest to a guess of all that there are, but for the cell's known corner; None where there is none.
+
+    Parameters
+    ----------
+    search : NodeSearch
+        Of the two parents A and B.
+    corner, guess : (face, x, y)
+        The node that closes the cell, at one spacing from A and from B like the one sought; where that is expected.
+    side : float
+        1 where A's edge meets B's counter-clockwise at the node, -1 where not.
+    """
+    surface = search.surface
+    near = SurfacePoint.from_frame(surface, *guess).position(surface)
+    known = SurfacePoint.from_frame(surface, *corner).position(surface)
+    shortest = float(search.length.min())
+    starts = []
+    for place in _crossings(search):
+        at = SurfacePoint.from_frame(surface, *place).position(surface)
+        starts.append((float(np.linalg.norm(at - near)), place))
+    for _, place in sorted(starts):
+        found = search.run(place, side)
+        if found is None:
+            continue
+        at = SurfacePoint.from_frame(surface, *found.place).position(surface)
+        if np.linalg.norm(at - known) > SAME * shortest:
+            return found
+    return None
+
+
+def _crossings(search: NodeSearch) -> Iterator[Place]:
+    """Places on the circle about A, to a fraction of a degree, where the distance to B passes the spacing."""
+    turns = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
+    misses = _misses(search, turns)
+    for k in range(DIRECTIONS):
+        low, high = turns[k], turns[k] + 2 * np.pi / DIRECTIONS
+        (place, before), (beyond, after) = misses[k], misses[(k + 1) % DIRECTIONS]
+        if before * after > 0 or not np.isfinite(before * after):
+            # a radius that is none may hide a crossing beside it
+            if np.isfinite(before) != np.isfinite(after):
+                start = place if np.isfinite(before) else beyond
+                if start is not None:
+                    yield start
+            continue
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            ((there, miss),) = _misses(search, np.array([middle]))
+            if there is None or not np.isfinite(miss):
+                break
+            place = there
+            if miss * before > 0:
+                low = middle
+            else:
+                high = middle
+        if place is not None:
+            yield place
+
+
+def _misses(search: NodeSearch, turns: FloatArray) -> list[tuple[Place | None, float]]:
+    """Ends of the straight paths that leave A at given angles, and how far each misses being one spacing from B, mm.
+
+    NaN where a path leaves the surface, or is not the shortest to its end.
+    """
+    radius = float(search.length[0])
+    places = [step_from(search.surface, search.a, radius * np.array([np.cos(t), np.sin(t)])) for t in turns]
+    trial = search.patch.copy()
+    vertices = [None if place is None else insert(trial, search.surface, place) for place in places]
+    kept = [vertex for vertex in vertices if vertex is not None]
+    to_a, to_b = (dict(zip(kept, exact_distances(trial, p, kept), strict=True)) for p in search.parents)
+    misses = []
+    for place, vertex in zip(places, vertices, strict=True):
+        if vertex is None or to_a[vertex] < radius * (1 - NO_RADIUS):
+            misses.append((place, float("nan")))
+        else:
+            misses.append((place, float(to_b[vertex] - search.length[1])))
+    return misses
