@@ -103,6 +103,7 @@ def stop_where_met(mesh, net, index, position, order, radius):
     status = net.status
     n_warp, n_weft = status.shape
     kept = np.full((n_warp, n_weft), 8, dtype=np.uint8)
+    cut = np.zeros((n_warp, n_weft), dtype=np.bool_)
     following = np.full(len(order), -1, dtype=np.int64)
     # kept nodes by cubes of side `radius`, hashed; a chance collision only costs a look
     size = 1024
@@ -123,9 +124,9 @@ def stop_where_met(mesh, net, index, position, order, radius):
         # behind a node that met the net the fibre is cut
         pi = i - 1 if i > index[0] else i + 1
         pj = j - 1 if j > index[1] else j + 1
-        if i != index[0] and status[pi, j] == MET_ITSELF:
+        if i != index[0] and cut[pi, j]:
             met = True
-        if j != index[1] and status[i, pj] == MET_ITSELF:
+        if j != index[1] and cut[i, pj]:
             met = True
         vx = np.int64(math.floor(px / radius))
         vy = np.int64(math.floor(py / radius))
@@ -162,6 +163,7 @@ def stop_where_met(mesh, net, index, position, order, radius):
                     break
         if met:
             status[i, j] = MET_ITSELF
+            cut[i, j] = True
             taken += 1
             continue
         kept[i, j] = status[i, j]

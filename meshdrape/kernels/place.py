@@ -20,11 +20,13 @@ ALTERNATE_FROM = 5
 # And from here on by half: a path that jumps to and fro by itself is caught between.
 DAMPED_FROM = 24
 # Warp and weft closer than one degree to parallel are taken as folded.
-FOLD_COSINE = math.cos(math.radians(1.0))
+FOLD_SINE = math.sin(math.radians(1.0))
 
 
 @njit(cache=True, error_model="numpy")
-def place(plane, neighbour, frame, detour, normal, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance):
+def place(
+    plane, neighbour, frame, vertex, detour, normal, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance
+):
     """Point at geodesic distance wa from A and wb from B, near the ends of the two given paths.
 
     Both paths are walked and brought into one plane, where the ends of all paths that cross the same triangles lie
@@ -70,9 +72,12 @@ def place(plane, neighbour, frame, detour, normal, fa, xa, ya, ux, uy, wa, fb, x
                 frame, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb
             )
         if gap2 <= tolerance * tolerance:
+            if not shared and not _touch(vertex, f1, f2):
+                # two sheets of the surface that lie one on the other: no node
+                return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             if not shared:
                 qx, qy = turn_into(plane, neighbour, frame, f2, qx, qy, f1)
-            if abs(px * qx + py * qy) > FOLD_COSINE or (px * qy - py * qx) * side < 0.0:
+            if (px * qy - py * qx) * side < FOLD_SINE:
                 return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             code = PLACED
             if (
@@ -133,6 +138,16 @@ def place(plane, neighbour, frame, detour, normal, fa, xa, ya, ux, uy, wa, fb, x
         code, f1, ax, ay, px, py = walk(plane, neighbour, fa, xa, ya, ux, uy, wa)
         if code != WALKED:
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
+
+
+@njit(cache=True, error_model="numpy")
+def _touch(vertex, f, g):
+    """Whether two faces share a vertex."""
+    for k in range(3):
+        for l in range(3):  # noqa: E741
+            if vertex[f, k] == vertex[g, l]:
+                return True
+    return False
 
 
 @njit(cache=True, error_model="numpy")

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from meshdrape.kernels.certify import second_route, turned_over
-from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, OUTSIDE, PLACED, place
+from meshdrape.kernels.place import DOUBTED, FOLD_SINE, NOT_CONVERGED, OUTSIDE, PLACED, place
 from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
 
 OFF_MOULD = 1
@@ -66,15 +66,18 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
     head_face = net.face[hi, hj]
     sx = ox
     sy = oy
+    # on a generator, which a vertex may have turned on its way?
+    half = -1
+    order = 0
     if family == WARP and j == j0:
-        # on a generator, which a vertex may have turned on its way
         half = 0 if hi > ti else 2
-        ex = start.arrival[half, abs(hi - i0) - 1, 0]
-        ey = start.arrival[half, abs(hi - i0) - 1, 1]
+        order = abs(hi - i0)
     elif family == WEFT and i == i0:
         half = 1 if hj > tj else 3
-        ex = start.arrival[half, abs(hj - j0) - 1, 0]
-        ey = start.arrival[half, abs(hj - j0) - 1, 1]
+        order = abs(hj - j0)
+    if half >= 0 and order <= start.n_nodes[half]:
+        ex = start.arrival[half, order - 1, 0]
+        ey = start.arrival[half, order - 1, 1]
     elif ox * ox + oy * oy > 2.0:
         # a bent edge: twice a unit vector marks it
         at = np.searchsorted(start.bent_key, edge_key(net, family, min(ti, hi), min(tj, hj)))
@@ -158,6 +161,7 @@ def sweep(
     plane = mesh.plane
     neighbour = mesh.neighbour
     frame = mesh.frame
+    vertex = mesh.vertex
     rim = mesh.rim
     detour = detours.tangent
     wary = detours.wary
@@ -240,6 +244,7 @@ def sweep(
                     and plane[fa, 0] * x + plane[fa, 1] * y >= plane[fa, 2]
                     and plane[fa, 3] * x + plane[fa, 4] * y >= plane[fa, 5]
                     and plane[fa, 6] * x + plane[fa, 7] * y >= plane[fa, 8]
+                    and (ux * vy - uy * vx) * side > FOLD_SINE
                 ):
                     face[i, j] = fa
                     xy[i, j, 0] = x
@@ -298,6 +303,7 @@ def sweep(
                 plane,
                 neighbour,
                 frame,
+                vertex,
                 detour,
                 normal,
                 fa,

@@ -84,6 +84,8 @@ class Start(NamedTuple):
     """(4, 2) unit direction in that frame."""
     sector: FloatArray
     """(4,) angle from each half-fibre to the next, counter-clockwise, rad."""
+    n_nodes: NDArray[np.int64]
+    """(4,) nodes on each half-fibre."""
     arrival: FloatArray
     """(4, n, 2) direction in which each half-fibre reaches its first, second ... node, in that node's frame."""
     through: NDArray[np.bool_]

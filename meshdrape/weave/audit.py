@@ -87,9 +87,8 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
             skipped += 1
             continue
         error = abs(distance - spacing) / spacing
-        if _runs_through(net, family, i, j) or (
-            distance < spacing * (1 - SECOND_ROUTE) and _on_generator(net, family, i, j)
-        ):
+        generator = _generator_edge(net, family, i, j)
+        if generator and (net.start.through[generator] or distance < spacing * (1 - SECOND_ROUTE)):
             through += 1
             worst_through = max(worst_through, error)
             continue
@@ -135,18 +134,13 @@ def _point(net: Net, i: int, j: int) -> SurfacePoint:
     return SurfacePoint.from_frame(net.surface, int(net.lattice.face[i, j]), float(x), float(y))
 
 
-def _on_generator(net: Net, family: int, i: int, j: int) -> bool:
-    i0, j0 = net.seed_index
-    return (family == WARP and j == j0) or (family == WEFT and i == i0)
-
-
-def _runs_through(net: Net, family: int, i: int, j: int) -> bool:
-    """Whether this is a generator edge with a vertex on it."""
+def _generator_edge(net: Net, family: int, i: int, j: int) -> tuple[int, int] | None:
+    """Half-fibre and number of a generator's edge; None for any other edge."""
     i0, j0 = net.seed_index
     if family == WARP and j == j0:
         half, order = (0, i - i0) if i >= i0 else (2, i0 - i - 1)
     elif family == WEFT and i == i0:
         half, order = (1, j - j0) if j >= j0 else (3, j0 - j - 1)
     else:
-        return False
-    return bool(net.start.through[half, order])
+        return None
+    return (half, order) if order < net.start.n_nodes[half] else None

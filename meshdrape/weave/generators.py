@@ -125,6 +125,7 @@ def lay_generators(
         xy=star.xy,
         out=star.out,
         sector=star.sector,
+        n_nodes=np.array(set_nodes),
         arrival=arrival,
         through=through,
         bent_key=np.empty(0, dtype=np.int64),

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshdrape.kernels import emit
+from meshdrape.kernels.complete import has_bays
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface, SurfacePoint
+from meshdrape.weave.bays import fill_bays
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import (
@@ -22,6 +24,7 @@ from meshdrape.weave.generators import (
     generator_counts,
     lay_generators,
 )
+from meshdrape.weave.judge import Judge
 from meshdrape.weave.net import run_kernel
 from meshdrape.weave.quadrants import fill
 from meshdrape.weave.start import seed_star
@@ -92,12 +95,27 @@ def lay(
     lattice, start = lay_generators(surface, fabric, star, counts, memory, reach)
     settled = 0
     while True:
-        start, more = fill(surface, fabric, lattice, start, threads, progress, settle_every=settle_every)
-        settled += more
+        judge = Judge(surface, fabric, lattice, start, settle_every=settle_every)
+        fill(surface, fabric, lattice, judge, threads, progress, settle_every=settle_every)
+        start, settled = judge.start, settled + judge.settled
         grow = _room_wanted(lattice, start, counts)
         if not any(grow):
-            return Laid(surface, lattice, start, settled)
+            break
         lattice, start = _grown(lattice, start, grow, fabric, memory)
+    if has_bays(lattice.status):
+        # cloth beside the mould must not take the place, in the lattice, of cloth on an arm beyond
+        trim(surface, fabric, lattice, start, threads, hem=0)
+        start = _generators_cut(lattice, start)
+        while True:
+            judge = Judge(surface, fabric, lattice, start, settle_every=settle_every)
+            fill_bays(surface, fabric, lattice, judge)
+            start, settled = judge.start, settled + judge.settled
+            grow = _room_wanted(lattice, start, counts)
+            if not any(grow):
+                break
+            lattice, start = _grown(lattice, start, grow, fabric, memory)
+            lattice.status[lattice.status == NodeStatus.NOT_REACHED] = NodeStatus.OUTSIDE
+    return Laid(surface, lattice, start, settled)
 
 
 def _with_collar(part: Surface, depth: float) -> Surface:
@@ -159,8 +177,18 @@ def _grown(
     return larger, moved
 
 
-def trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, threads: int) -> None:
-    """Take back the nodes on the extension farther than the hem from a cell that touches the mould."""
+def _generators_cut(lattice: Lattice, start: Start) -> Start:
+    """The start with generators that end where their nodes were taken back."""
+    i0, j0 = (int(v) for v in start.origin)
+    status = lattice.status
+    halves = (status[i0 + 1 :, j0], status[i0, j0 + 1 :], status[:i0, j0][::-1], status[i0, :j0][::-1])
+    ends = [np.flatnonzero(half > NodeStatus.OFF_MOULD) for half in halves]
+    lengths = [int(end[0]) if len(end) else len(half) for end, half in zip(ends, halves, strict=True)]
+    return start._replace(n_nodes=np.minimum(start.n_nodes, lengths))
+
+
+def trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, threads: int, hem: int = HEM) -> None:
+    """Take back the nodes on the extension farther than `hem` cells from one that touches the mould."""
     n_warp, n_weft = lattice.status.shape
     touching = np.empty((max(n_warp - 1, 0), max(n_weft - 1, 0)), dtype=np.bool_)
     rows = max(1, -(-(n_warp - 1) // (4 * threads)))
@@ -180,4 +208,4 @@ def trim(surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, threa
         ],
         threads,
     )
-    emit.trim(lattice, touching, HEM)
+    emit.trim(lattice, touching, hem)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from meshdrape.geodesic.distance import exact_distances, surface_distance
 from meshdrape.geodesic.patch import Patch, faces_between
+from meshdrape.kernels.place import FOLD_SINE
 from meshdrape.kernels.walk import WALKED, walk
 from meshdrape.surface import Surface, SurfacePoint
 
@@ -104,7 +105,8 @@ class NodeSearch:
             return None
         # the gradient of a distance is the direction in which its path arrives
         arrive = slope / np.linalg.norm(slope, axis=1)[:, None]
-        if (arrive[0, 0] * arrive[1, 1] - arrive[0, 1] * arrive[1, 0]) * side <= 0:
+        # sine of the angle from A's edge to B's: folded, as for straight paths, within a degree of parallel
+        if (arrive[0, 0] * arrive[1, 1] - arrive[0, 1] * arrive[1, 0]) * side <= FOLD_SINE:
             return None
         edges = []
         for parent, length, into in zip((self.a, self.b), self.length, arrive, strict=True):
@@ -118,7 +120,10 @@ class NodeSearch:
         """Shortest distances (2,) from a place to A and to B, mm; None where it lies off the patch."""
         trial = self.patch.copy()
         vertex = insert(trial, self.surface, place)
-        return None if vertex is None else exact_distances(trial, vertex, self.parents)
+        if vertex is None:
+            return None
+        found = exact_distances(trial, vertex, self.parents)
+        return found if np.isfinite(found).all() else None
 
     def _meet(self, guess: Place) -> Place | None:
         """Broyden's method on the two distances, in the plane of the guess's face unfolded along straight paths."""
@@ -204,7 +209,10 @@ class NodeSearch:
                 target = insert(trial, self.surface, place)
                 if source is None or target is None:
                     return None
-                ends.append(float(exact_distances(trial, source, [target])[0]))
+                found = float(exact_distances(trial, source, [target])[0])
+                if not np.isfinite(found):
+                    return None
+                ends.append(found)
             slope[axis] = (ends[0] - ends[1]) / (2 * step)
         size = float(np.linalg.norm(slope))
         return -slope / size if size > 0.1 else None

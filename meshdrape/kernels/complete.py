@@ -1,0 +1,260 @@
+"""Arms of a mould that lie back towards the seed, covered from the cloth beyond them.
+
+Quadrants grow away from the generators. Round a reflex corner of the outline, the leg of a U say, cloth has to grow
+back: there a node is placed from any two neighbours that close a cell, in any of the four senses of the lattice.
+"""
+
+import math
+
+from numba import njit
+
+from meshdrape.kernels.certify import second_route, turned_over
+from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, place
+from meshdrape.kernels.sweep import (
+    FREE_WARP,
+    FREE_WEFT,
+    LOST,
+    OFF_MOULD,
+    UNSURE,
+    WARP,
+    WEFT,
+    edge_ends,
+    keep_edge,
+)
+from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
+
+OUTSIDE = 2
+MET_ITSELF = 4
+
+# Gap, in spacings, within which two fronts of the sheet agree on an edge.
+AGREE = 1e-10
+TURNS = 8
+# A node is not placed twice in vain.
+NOWHERE = -1
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def has_bays(status):
+    """Whether a node on the mould has a neighbour that no quadrant reached for want of parents."""
+    n_warp, n_weft = status.shape
+    for i in range(n_warp):
+        for j in range(n_weft - 1):
+            a = status[i, j]
+            b = status[i, j + 1]
+            if (a == PLACED and b == OUTSIDE) or (a == OUTSIDE and b == PLACED):
+                return True
+    for i in range(n_warp - 1):
+        for j in range(n_weft):
+            a = status[i, j]
+            b = status[i + 1, j]
+            if (a == PLACED and b == OUTSIDE) or (a == OUTSIDE and b == PLACED):
+                return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def _has(status, i, j):
+    return 0 <= i < status.shape[0] and 0 <= j < status.shape[1] and status[i, j] <= OFF_MOULD
+
+
+@njit(cache=True, error_model="numpy")
+def _leads_from_mould(status, i, j, back_i, back_j):
+    """Whether the fibre through (i, j) left the mould no more than two nodes before."""
+    for _ in range(3):
+        if not _has(status, i, j):
+            return False
+        if status[i, j] == PLACED:
+            return True
+        i += back_i
+        j += back_j
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def join(mesh, net, start, family, i, j, step, dx, dy, length):
+    """Keep the edge from (i, j) to its neighbour, if a straight path near the given direction is one spacing long."""
+    i2 = i + step if family == WARP else i
+    j2 = j if family == WARP else j + step
+    goal = net.face[i2, j2]
+    gx = net.xy[i2, j2, 0]
+    gy = net.xy[i2, j2, 1]
+    for _ in range(TURNS):
+        code, f, x, y, ex, ey = walk(
+            mesh.plane, mesh.neighbour, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length
+        )
+        if code != WALKED:
+            return False
+        # the goal seen from the face the path ends in
+        hx = gx
+        hy = gy
+        if f != goal:
+            found = False
+            for k in range(3):
+                other = mesh.neighbour[goal, k]
+                if other >= 0 and other // 3 == f:
+                    c = mesh.plane[goal, 9 + 4 * k]
+                    s = mesh.plane[goal, 10 + 4 * k]
+                    hx, hy = (
+                        c * gx - s * gy + mesh.plane[goal, 11 + 4 * k],
+                        s * gx + c * gy + mesh.plane[goal, 12 + 4 * k],
+                    )
+                    found = True
+                    break
+            if not found:
+                return False
+        ax = hx - x
+        ay = hy - y
+        size = math.sqrt(ax * ax + ay * ay)
+        gap = math.sqrt((hx - x - length * ex) ** 2 + (hy - y - length * ey) ** 2)
+        if gap <= AGREE * length:
+            ex, ey = turn_into(mesh.plane, mesh.neighbour, mesh.frame, f, ex, ey, goal)
+            keep_edge(net, start, family, i, j, step, dx, dy, ex, ey)
+            return True
+        if abs(size - length) > 1e-3 * length:
+            return False
+        c = (ax * ex + ay * ey) / size
+        s = (ay * ex - ax * ey) / size
+        dx, dy = c * dx - s * dy, s * dx + c * dy
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def joins_all(mesh, net, start, si, sj, i, j, warp, weft):
+    """Whether a node just placed from (i - si, j) or (i, j - sj) is one spacing from every other neighbour placed.
+
+    Keeps the edges to those.
+    """
+    status = net.status
+    for family in (WARP, WEFT):
+        length = warp if family == WARP else weft
+        for sense in (1, -1):
+            step = sense * (si if family == WARP else sj)
+            ni = i + step if family == WARP else i
+            nj = j if family == WARP else j + step
+            if not _has(status, ni, nj):
+                continue
+            bi = i - step if family == WARP else i
+            bj = j if family == WARP else j - step
+            # where there is an edge from the other side, straight on
+            if sense == 1 and _has(status, bi, bj):
+                _, _, dx, dy = edge_ends(mesh, net, start, family, bi, bj, step, length)
+            elif sense == -1:
+                # the edge to a parent is kept already, but for a free fibre's missing one
+                continue
+            else:
+                return False
+            if not join(mesh, net, start, family, i, j, step, dx, dy, length):
+                return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def complete(
+    mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, report
+):
+    """Place nodes that no quadrant reached, in the sense (si, sj), in the rectangle from (i_first, j_first) on.
+
+    As `sweep`, but from whatever cloth there is on the near side, and only where the node agrees with all its
+    neighbours: where two fronts of the sheet come together and do not, it is MET_ITSELF.
+
+    Parameters
+    ----------
+    report : (5,) int64
+        Gets as that of `sweep`: nodes placed, iterations, the (i, j) of a node to be settled, and why.
+
+    Returns
+    -------
+    bool
+        True if the rectangle is done; False if it stopped at report[2:4], marked NOT_CONVERGED.
+    """
+    status = net.status
+    side = float(si * sj)
+    for a in range(i_count):
+        i = i_first + si * a
+        ia = i - si
+        for b in range(j_count):
+            j = j_first + sj * b
+            jb = j - sj
+            if status[i, j] != OUTSIDE:
+                continue
+            has_a = _has(status, ia, j)
+            has_b = _has(status, i, jb)
+            if not (has_a or has_b):
+                continue
+            if has_a and has_b:
+                if not _has(status, ia, jb):
+                    continue
+                beside = status[ia, j] == PLACED or status[i, jb] == PLACED or status[ia, jb] == PLACED
+                px, py, ex, ey = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
+                qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
+                c = px * qx + py * qy
+                s = py * qx - px * qy
+                size = math.sqrt((c * c + s * s) * (gx * gx + gy * gy))
+                gx /= size
+                gy /= size
+                size = math.sqrt((c * c + s * s) * (ex * ex + ey * ey))
+                ex /= size
+                ey /= size
+                code, f, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations = place(
+                    mesh.plane, mesh.neighbour, mesh.frame, mesh.vertex, detours.tangent, detours.normal,
+                    net.face[ia, j], net.xy[ia, j, 0], net.xy[ia, j, 1], c * gx - s * gy, s * gx + c * gy, warp,
+                    net.face[i, jb], net.xy[i, jb, 0], net.xy[i, jb, 1], c * ex + s * ey, c * ey - s * ex, weft,
+                    side, tolerance,
+                )  # fmt: skip
+                report[1] += iterations
+                if code not in (PLACED, DOUBTED, NOT_CONVERGED):
+                    continue
+                if code == NOT_CONVERGED and status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD:
+                    continue
+                net.face[i, j] = f
+                net.xy[i, j, 0] = x
+                net.xy[i, j, 1] = y
+                keep_edge(net, start, WARP, ia, j, si, ux, uy, px, py)
+                keep_edge(net, start, WEFT, i, jb, sj, vx, vy, qx, qy)
+                why = LOST if code == NOT_CONVERGED else UNSURE if code == DOUBTED else NOWHERE
+            else:
+                # the sheet's edge hangs free: its last fibre goes straight on
+                family = WARP if has_a else WEFT
+                step = si if has_a else sj
+                length = warp if has_a else weft
+                pi = ia if has_a else i
+                pj = j if has_a else jb
+                bi = pi - si if has_a else i
+                bj = j if has_a else pj - sj
+                if not _has(status, bi, bj) or not _leads_from_mould(status, pi, pj, bi - pi, bj - pj):
+                    continue
+                beside = status[pi, pj] == PLACED
+                _, _, dx, dy = edge_ends(mesh, net, start, family, bi, bj, step, length)
+                size = math.sqrt(dx * dx + dy * dy)
+                dx /= size
+                dy /= size
+                tail = net.face[pi, pj]
+                x = net.xy[pi, pj, 0]
+                y = net.xy[pi, pj, 1]
+                doubted = second_route(mesh.plane, mesh.neighbour, detours.tangent, tail, x, y, dx, dy, length)
+                code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, tail, x, y, dx, dy, length)
+                if code != WALKED:
+                    continue
+                net.face[i, j] = f
+                net.xy[i, j, 0] = x + length * ex
+                net.xy[i, j, 1] = y + length * ey
+                keep_edge(net, start, family, pi, pj, step, dx, dy, ex, ey)
+                why = NOWHERE
+                if doubted or turned_over(detours.normal, tail, f):
+                    why = FREE_WARP if family == WARP else FREE_WEFT
+            if why != NOWHERE:
+                status[i, j] = NOT_CONVERGED
+                report[2] = i
+                report[3] = j
+                report[4] = why
+                return False
+            off = off_mould(mesh, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], slack)
+            if off and not beside:
+                continue
+            if not joins_all(mesh, net, start, si, sj, i, j, warp, weft):
+                if not off:
+                    status[i, j] = MET_ITSELF
+                continue
+            status[i, j] = OFF_MOULD if off else PLACED
+            report[0] += 1
+    return True
