@@ -47,6 +47,7 @@ Facts, exact, of the default: the real 14 m wing with a parabola of c = 0.1 betw
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 from math import cos, isfinite, radians, sin, tan
 from pathlib import Path
 
@@ -246,7 +247,7 @@ def spline(parameter: str, table: str, span: float) -> Profile:
         msg = f"{parameter}={table!r}: give at least two points, such as 0:0,{span:g}:100, or the name of a CSV file"
         raise ValueError(msg)
     at, value = np.array(points).T
-    for before, after in zip(at[:-1], at[1:], strict=True):
+    for before, after in pairwise(at):
         if not after > before:
             msg = f"{parameter}: y must increase, but {after:g} follows {before:g}"
             raise ValueError(msg)
@@ -373,12 +374,8 @@ def with_fillets(
     rounding = BRepFilletAPI_MakeFillet(solid.wrapped)
     for crease in creases.values():
         rounding.Add(fillet_radius, crease.wrapped)
-    try:
-        rounding.Build()
-        done = rounding.IsDone()
-    except Exception:  # Open CASCADE's own, without a base class in common
-        done = False
-    if not done:
+    rounding.Build()
+    if not (rounding.IsDone() and cq.Shape.cast(rounding.Shape()).isValid()):
         msg = f"fillet_radius={fillet_radius}: no such fillet fits along the crease"
         raise ValueError(msg)
     rounded = cq.Shape.cast(rounding.Shape()).Solids()[0]
