@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 # What a script must do to be a mould; the one that writes the samples shows nothing.
 SHOWS = "show_object("
+# Where the wheel's data goes, under the prefix of the environment.
+INSTALLED = ("share", "meshdrape", "cad")
 
 
 @dataclass(frozen=True)
@@ -87,13 +89,11 @@ def script_folder() -> Path:
     sources = Path(__file__).resolve().parents[2]
     if (sources / "pyproject.toml").is_file() and (sources / "cad").is_dir():
         return sources / "cad"
-    try:
-        files = metadata.files("meshdrape") or []
-    except metadata.PackageNotFoundError:
-        files = []
-    for file in files:
-        if file.parts[-4:] == ("share", "meshdrape", "cad", "wing_spar.py"):
-            return Path(str(file.locate())).resolve().parent
+    for installed in metadata.distributions(name="meshdrape"):
+        for file in installed.files or ():
+            folder = Path(str(file.locate())).parent
+            if folder.parts[-3:] == INSTALLED and folder.is_dir():
+                return folder.resolve()
     msg = f"the scripts of the moulds are not beside {sources} nor installed; install meshdrape anew"
     raise FileError(msg)
 
