@@ -14,10 +14,9 @@ the formula to 1e-4 mm.
 
 Lengths in millimetres. Facts, exact, with a root of 1000, a chord of 1600, t = 0.3 and 12° of twist over 3000 mm:
 
-:Area: AREA mm²
-:Gaussian curvature: both signs, KMIDDLE mm⁻² at theta = π/2 half way along; 0 along the root, where the surface is
-    a cylinder to first order: not developable
-:Flat length: π R = 1570.796 mm round the root, TIP mm round the aerofoil
+:Area: 4900438.486 mm²
+:Gaussian curvature: both signs: at theta = π/2 3.1237e-7 mm⁻² at the root and -1.2103e-7 mm⁻² at v = 0.9
+:Flat length: π R = 1570.796 mm round the root, 1736.726 mm round the aerofoil
 :Shear: no closed form
 :Source: the formulas above; E. N. Jacobs, K. E. Ward and R. M. Pinkerton, NACA report 460, 1933
 """

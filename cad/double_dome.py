@@ -8,10 +8,11 @@ of the domes have their poles outside themselves.
 
 Lengths in millimetres. Facts, exact, with R = 60, d = 110, w = 200 mm and a rim of 470 by 270 mm:
 
-:Area: AREA
-:Gaussian curvature: 1/R² = 2.77778e-4 mm⁻² on the domes, -1 / (w (h - w)) = WAIST mm⁻² in the middle of the waist,
+:Area: without the fillet: domes: 2 π R² (1 + d / (R + w)) = 32189.242 mm²; waist: 2 π w (h a - w sin a),
+    sin a = d / (R + w), = 22992.601 mm²; rim: 95563.542 mm²
+:Gaussian curvature: 1/R² = 2.77778e-4 mm⁻² on the domes, -1 / (w (h - w)) = -1.40511e-4 mm⁻² amid the waist,
     0 on the rim; in all 0 by Gauss and Bonnet, the rim being flat
-:Flat length: RIDGE mm along the ridge from the middle of the waist to the foot of a dome, without the fillet
+:Flat length: 207.826 mm along the ridge from the middle of the waist to the foot of a dome, without the fillet
 :Shear: no closed form; on a dome alone, from its top, that of the hemisphere
 :Source: a surface of revolution
 """

@@ -6,10 +6,11 @@ elevation a, sin a = r / (R + r), and the rim at rho. The dome's face has its po
 
 Lengths in millimetres. Facts, exact, with R = 100, r = 20 and a rim of radius 200 mm:
 
-:Area: AREA
+:Area: dome: 2 π R² (1 - sin a) = 52359.878 mm²; fillet: 2 π r (rho (π/2 - a) - r (1 - sin a)) = 18771.611 mm²; rim:
+    π (200² - rho²) = 81681.409 mm²
 :Gaussian curvature: 1/R² = 1e-4 mm⁻² on the dome, 0 on the rim, negative on the fillet; 2π (1 - sin a) in all on the
     dome, the opposite on the fillet
-:Flat length: MERIDIAN mm from the top to the rim's border along any meridian
+:Flat length: 250.080 mm from the top to the rim's border along any meridian
 :Shear: on the dome that of the hemisphere: 14.27443° at fabric coordinates u = v = R / 2 from the top
 :Source: surfaces of revolution; on the dome the smooth limit of the Chebyshev net, σ_uv = -K sin σ, in closed form
 """

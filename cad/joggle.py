@@ -6,10 +6,10 @@ cylinders with common rulings.
 
 Lengths in millimetres. Facts, exact, with a depth of 10, radii of 15, a ramp of 30° and 150 mm flat at either end:
 
-:Area: AREA
+:Area: width · flat length = 65533.897 mm²
 :Gaussian curvature: 0
 :Flat length: before + 2 · radius · angle + ramp + after, the ramp (depth - 2 radius (1 - cos angle)) / sin angle:
-    FLAT mm across the step
+    327.669 mm across the step
 :Shear: 0 from any seed in any direction
 :Source: a developable surface with two straight fibres at right angles
 """

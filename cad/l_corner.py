@@ -5,9 +5,9 @@ radius, the lower flange goes straight on. Extruded along y it is developable: t
 
 Lengths in millimetres. Facts, exact, with flanges of 100 and 80, a radius of 10 and an angle of 90°:
 
-:Area: AREA
+:Area: flanges: 30000 mm² and 24000 mm²; fillet: width · radius · angle = 4712.389 mm²
 :Gaussian curvature: 0
-:Flat length: upper + radius · angle + lower = FLAT mm across the bend
+:Flat length: upper + radius · angle + lower = 195.708 mm across the bend
 :Shear: 0 from any seed in any direction
 :Source: a developable surface with two straight fibres at right angles
 """

@@ -12,9 +12,9 @@ lower side are two faces that meet smoothly in the nose; each follows the sectio
 Lengths in millimetres. Facts, exact, with NACA 2412, a chord of 1000, a depth of 0.3, a span of 2000, swept by 25° and
 without taper:
 
-:Area: AREA
+:Area: upper: 649249.476 mm²; lower: 631647.207 mm²
 :Gaussian curvature: 0; the nose has a radius of 1.1019 t² · chord = 15.867 mm in the section
-:Flat length: FLAT; 2206.756 mm along the nose
+:Flat length: 320.883 mm over the upper side of the section and 313.754 mm over the lower; 2206.756 mm along the nose
 :Shear: 0 from any seed in any direction
 :Source: a developable surface with two straight fibres at right angles; E. N. Jacobs, K. E. Ward and R. M. Pinkerton,
     NACA report 460, 1933

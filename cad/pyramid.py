@@ -5,7 +5,7 @@ The apex is the origin and the axis points down to -z. All curvature sits in the
 
 Lengths in millimetres. Facts, exact, with four faces of 60° at the apex and slant edges of 1000 mm:
 
-:Area: sides · slant² sin(apex angle) / 2 = AREA mm²
+:Area: sides · slant² sin(apex angle) / 2 = 1732050.808 mm²
 :Gaussian curvature: 0, but for the apex, an angle defect of 2π - sides · apex angle = 2π/3
 :Flat length: 1000 mm along each edge
 :Shear: 90° - sides · apex angle / 4 = 30° in every cell of the net whose origin is the apex: the four half-fibres

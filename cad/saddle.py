@@ -5,9 +5,9 @@ x = 0 and y = 0 are geodesics by symmetry, and so are, where p = q, the two stra
 
 Lengths in millimetres. Facts, exact, with p = q = 1000 mm over a square of 2400 mm:
 
-:Area: ∬ √(1 + x²/p² + y²/q²) dx dy = AREA mm²
+:Area: ∬ √(1 + x²/p² + y²/q²) dx dy = 7967499.080 mm²
 :Gaussian curvature: -1 / (p q (1 + x²/p² + y²/q²)²), -1e-6 mm⁻² at the centre
-:Flat length: FLAT mm along x = 0 and y = 0; 3394.113 mm along the straight lines x = ±y
+:Flat length: 2890.433 mm along x = 0 and y = 0; 3394.113 mm along the straight lines x = ±y
 :Shear: started along the lines x = ±y it is the hyperbolic paraboloid z = x y / p turned by 45°: -26.66743° at fabric
     coordinates (1000, 1000) mm (cells open), the node there at (1078.4965, 0, 581.5774) mm
 :Source: smooth limit of the Chebyshev net, σ_uv = -K sin σ, solved to more digits than printed
