@@ -6,8 +6,8 @@ x = flange. Web and flanges are at right angles all along, so each fillet is a q
 
 Lengths in millimetres. Facts, exact, with a span of 2000, heights of 300 and 150, flanges of 80 and a radius of 12 mm:
 
-:Area: web: span ((root + tip height) / 2 - 2 radius / cos t) = 401966.262 mm²; each fillet: π/2 · radius · span / cos t
-    = 37725.610 mm²; each flange: (flange - radius) span / cos t = 136095.591 mm²
+:Area: web: span ((root + tip height) / 2 - 2 radius / cos t) = 401966.262 mm²; fillets: π/2 · radius · span / cos t,
+    37725.610 mm² and 37725.610 mm²; flanges: (flange - radius) span / cos t, 136095.591 mm² and 136095.591 mm²
 :Gaussian curvature: 0
 :Flat length: one flat sheet: web, fillets and flanges unroll together; 2001.406 mm along a flange's border
 :Shear: 0 from any seed in any direction

@@ -34,7 +34,7 @@ def off_hat(t: Tessellation) -> np.ndarray:
 def curvature_of_hat(p: np.ndarray) -> np.ndarray:
     out = np.hypot(*p.T[:2])
     on_rim, on_dome = np.abs(p[:, 2]) < 1e-9, np.abs(np.linalg.norm(p, axis=1) - 100) < 1e-9
-    return np.where(on_dome, 1e-4, np.where(on_rim, 0, -(FOOT - out) / (20**2 * out)))
+    return np.where(on_dome, 1e-4, np.where(on_rim, 0, -(FOOT - out) / (20**2 * np.maximum(out, 1))))
 
 
 def off_joggle(t: Tessellation) -> np.ndarray:

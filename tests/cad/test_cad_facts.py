@@ -17,10 +17,10 @@ import make_samples
 import numpy as np
 import pytest
 import wing_spar
-from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.BRepLProp import BRepLProp_SLProps
 from further_facts import FURTHER
 from mould_facts import Fact, over_square
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepLProp import BRepLProp_SLProps
 from references import sphere_angle
 from tessellated import Tessellation, tessellate
 
