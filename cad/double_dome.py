@@ -44,7 +44,7 @@ def build(
     rim_width: float = rim_width,
 ) -> cq.Workplane:
     """Build the open shell of ``left``, ``waist``, ``right``, ``fillet`` (four faces) and ``rim``, normals up."""
-    check(radius, distance / 2, waist_radius, fillet_radius, rim_length, rim_width)
+    check(radius, distance, waist_radius, fillet_radius, rim_length, rim_width)
     body = half_body(radius, distance / 2, waist_radius)
     slab = cq.Solid.makeBox(rim_length, rim_width, radius, cq.Vector(-rim_length / 2, -rim_width / 2, -radius))
     tool = body.fuse(slab).Solids()[0]
@@ -72,10 +72,10 @@ def name_of(face: cq.Face, radius: float) -> str:
 
 
 def check(
-    radius: float, away: float, waist_radius: float, fillet_radius: float, rim_length: float, rim_width: float
+    radius: float, distance: float, waist_radius: float, fillet_radius: float, rim_length: float, rim_width: float
 ) -> None:
     """Refuse what is no double dome."""
-    for name, size in (("radius", radius), ("distance", 2 * away), ("waist_radius", waist_radius)):
+    for name, size in (("radius", radius), ("distance", distance), ("waist_radius", waist_radius)):
         if not size > 0:
             msg = f"{name}={size}: must be positive"
             raise ValueError(msg)
@@ -83,11 +83,11 @@ def check(
         msg = f"fillet_radius={fillet_radius}: must be 0 (sharp) or smaller than the radius of the domes, {radius}"
         raise ValueError(msg)
     most = 2 * min(sqrt((radius + waist_radius) ** 2 - waist_radius**2), 0.7 * (radius + waist_radius))
-    if not 2 * away < most:
-        msg = f"distance={2 * away}: must be smaller than {most:.3f}, or the waist closes; raise radius or lower this"
+    if not distance < most:
+        msg = f"distance={distance}: must be smaller than {most:.3f}, or the waist closes; raise radius or lower this"
         raise ValueError(msg)
     foot = sqrt(radius**2 + 2 * radius * fillet_radius)
-    for name, size, least in (("rim_length", rim_length, 2 * (away + foot)), ("rim_width", rim_width, 2 * foot)):
+    for name, size, least in (("rim_length", rim_length, distance + 2 * foot), ("rim_width", rim_width, 2 * foot)):
         if not size > least:
             msg = f"{name}={size}: must be larger than {least:.3f}, where the foot ends"
             raise ValueError(msg)

@@ -5,9 +5,10 @@ chord, the section is z = camber line ± thickness, the thickness measured at ri
 
     5 t (0.2969 sqrt(xi) - 0.1260 xi - 0.3516 xi^2 + 0.2843 xi^3 - 0.1015 xi^4)
 
-covered from the nose to xi = depth on both sides. The tip section is the root's, tip_chord / chord times as large, its
-leading edge at (span tan(sweep), span, 0). So the surface is a cylinder, or a cone if it tapers: developable. Upper and
-lower side are two faces that meet smoothly in the nose; each follows the section to 1e-4 mm.
+covered from the nose to xi = depth on both sides, the largest camber at most. The tip section is the root's,
+tip_chord / chord times as large, its leading edge at (span tan(sweep), span, 0). So the surface is a cylinder, or a
+cone if it tapers: developable. Upper and lower side are two faces that meet smoothly in the nose; each follows the
+section to 1e-4 mm.
 
 Lengths in millimetres. Facts, exact, with NACA 2412, a chord of 1000, a depth of 0.3, a span of 2000, swept by 25° and
 without taper:
@@ -61,6 +62,11 @@ def build(
         msg = f"naca={naca!r}: four digits such as 0012 or 2412, of a section with a thickness"
         raise ValueError(msg)
     across = cq.Vector(span * tan(radians(sweep_deg)), span, 0)
+    if naca[0] != "0" and depth > int(naca[1]) / 10:
+        msg = (
+            f"depth={depth}: NACA {naca} is covered to its largest camber at most, at {int(naca[1]) / 10} of the chord"
+        )
+        raise ValueError(msg)
     faces = {}
     for name, side in (("upper", 1.0), ("lower", -1.0)):
         root = section_edge(section(naca, side), chord, depth)
@@ -76,16 +82,18 @@ def build(
 
 
 def section(naca: str, side: float) -> Callable[[NDArray], NDArray]:
-    """Return (x, z) over the chord of one side as a function of s = sqrt(xi), in which the nose is smooth."""
-    camber, place, thickness = int(naca[0]) / 100, int(naca[1]) / 10 or 0.5, int(naca[2:]) / 100
+    """Return (x, z) over the chord of one side as a function of s = sqrt(xi), in which the nose is smooth.
+
+    It holds up to the place of the largest camber, behind which the camber line is another parabola.
+    """
+    camber, place, thickness = int(naca[0]) / 100, int(naca[1]) / 10 or 1.0, int(naca[2:]) / 100
 
     def at(s: NDArray) -> NDArray:
         xi = s**2
         half = 5 * thickness * (0.2969 * s - 0.1260 * xi - 0.3516 * xi**2 + 0.2843 * xi**3 - 0.1015 * xi**4)
-        reach = np.where(np.real(xi) < place, place, 1 - place)
-        line = camber / reach**2 * (2 * place * xi - xi**2 + reach**2 - place**2)
-        slope = np.arctan(2 * camber / reach**2 * (place - xi))
-        return np.stack([xi - side * half * np.sin(slope), line * (1 + 0 * s) + side * half * np.cos(slope)], axis=-1)
+        line = camber / place**2 * (2 * place * xi - xi**2)
+        slope = np.arctan(2 * camber / place**2 * (place - xi))
+        return np.stack([xi - side * half * np.sin(slope), line + side * half * np.cos(slope)], axis=-1)
 
     return at
 

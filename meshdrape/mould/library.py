@@ -89,6 +89,8 @@ def script_folder() -> Path:
     sources = Path(__file__).resolve().parents[2]
     if (sources / "pyproject.toml").is_file() and (sources / "cad").is_dir():
         return sources / "cad"
+    if (beside := sources.joinpath(*INSTALLED)).is_dir():  # pip install --target
+        return beside
     for installed in metadata.distributions(name="meshdrape"):
         for file in installed.files or ():
             folder = Path(str(file.locate())).parent
