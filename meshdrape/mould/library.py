@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import io
+import math
 import tokenize
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -147,6 +148,10 @@ def build_shape(name: str, parameters: Mapping[str, Any] | None = None) -> Named
         known = ", ".join(parameter.name for parameter in chosen.parameters)
         msg = f"mould {name} has no parameter {min(unknown)!r}: {known}"
         raise FileError(msg)
+    for parameter in chosen.parameters:
+        if not isinstance(parameter.default, str) and _is_endless(words.get(parameter.name)):
+            msg = f"mould {name}: {parameter.name}={words[parameter.name]} is not a finite number"
+            raise FileError(msg)
     from meshdrape.mould.script import run_script
 
     return run_script(chosen.path, words, f"mould {name}")
@@ -189,6 +194,14 @@ def build_script(
     mould = brep_mould(shape, f"mould {name}", None, chord_tolerance, angle_tolerance)
     source = script(name).path
     return replace(mould, source=source, sha256=file_sha256(source))
+
+
+def _is_endless(value: Any) -> bool:
+    """Whether a value, or the word for it, is NaN or infinite, which no shape can have."""
+    try:
+        return not math.isfinite(float(value))
+    except (TypeError, ValueError):
+        return False
 
 
 def _table_text(table: Any) -> Any:

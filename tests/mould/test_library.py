@@ -108,6 +108,8 @@ def test_tolerances_are_passed_on():
         ("wing_spar", {"span": "long"}, ["mould wing_spar: span=long is not a number"]),
         ("wing_spar", {"deviation_table": 3}, ["3 is neither a word nor a table"]),
         ("wing_spar", {"deviation_table": ([0, 1], [2])}, ["two sequences (y, g) of as many numbers"]),
+        ("wing_spar", {"c": float("nan")}, ["mould wing_spar: c=nan is not a finite number"]),
+        ("pyramid", {"slant": "inf"}, ["mould pyramid: slant=inf is not a finite number"]),
         ("pyramid", {"sides": 2}, ["mould pyramid: sides=2: must be a whole number, at least 3"]),
     ],
 )
