@@ -18,13 +18,22 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import blade_root
+import c_spar
 import cadquery as cq
 import cone
 import cube_corner
 import cylinder
+import double_dome
+import hat
 import hemisphere
 import hypar
+import joggle
 import krogh_double_curved
+import l_corner
+import leading_edge
+import pyramid
+import saddle
 import wing_spar
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.IFSelect import IFSelect_ReturnStatus
@@ -56,6 +65,15 @@ SAMPLES = (
     Sample("hypar", hypar, chord_tolerance=0.5, angle_tolerance_deg=3.0),
     Sample("cube_corner", cube_corner, chord_tolerance=0.1, angle_tolerance_deg=1.0),
     Sample("krogh_double_curved", krogh_double_curved, chord_tolerance=0.1, angle_tolerance_deg=5.0),
+    Sample("hat", hat),
+    Sample("double_dome", double_dome, chord_tolerance=0.5, angle_tolerance_deg=9.0),
+    Sample("saddle", saddle, chord_tolerance=2.0, angle_tolerance_deg=6.0),
+    Sample("pyramid", pyramid, chord_tolerance=0.1, angle_tolerance_deg=1.0),
+    Sample("joggle", joggle, chord_tolerance=0.1, angle_tolerance_deg=1.0),
+    Sample("l_corner", l_corner, chord_tolerance=0.1, angle_tolerance_deg=1.0),
+    Sample("c_spar", c_spar, chord_tolerance=0.1, angle_tolerance_deg=1.0),
+    Sample("leading_edge", leading_edge, chord_tolerance=0.1, angle_tolerance_deg=1.0),
+    Sample("blade_root", blade_root, chord_tolerance=2.0, angle_tolerance_deg=5.0),
 )
 FACTS = ("Area", "Gaussian curvature", "Flat length", "Shear", "Source")  # fields of each script's docstring
 
@@ -88,8 +106,8 @@ def write_step(shape: cq.Workplane, name: str, path: Path) -> None:
     part = tool.AddShape(shape.val().wrapped, False)
     TDataStd_Name.Set_s(part, TCollection_ExtendedString(name))
     for tag, tagged in shape.ctx.tags.items():
-        label = tool.AddSubShape(part, tagged.val().wrapped)
-        TDataStd_Name.Set_s(label, TCollection_ExtendedString(tag))
+        for face in tagged.vals():
+            TDataStd_Name.Set_s(tool.AddSubShape(part, face.wrapped), TCollection_ExtendedString(tag))
 
     writer = STEPCAFControl_Writer()
     writer.SetNameMode(True)
@@ -168,7 +186,7 @@ def readme(shapes: dict[str, cq.Workplane], folder: Path) -> str:
 
 def face_list(step: Path, shape: cq.Workplane) -> str:
     """Faces of a STEP file, read back: id, name where the shape written has a tag, kind, area."""
-    tags = {tagged.val(): f" {name}" for name, tagged in shape.ctx.tags.items()}
+    tags = {face: f" {name}" for name, tagged in shape.ctx.tags.items() for face in tagged.vals()}
     names = [tags.get(face, "") for face in shape.val().Faces()]
     found = cq.importers.importStep(str(step)).faces().vals()
     return "; ".join(

@@ -17,6 +17,7 @@ DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
 COMMANDS = {
     "drape": "lay a fabric on a mould and write the net",
     "inspect": "list the faces of a mould and check its mesh",
+    "mould": "make a mould by one of the scripts that come with meshdrape",
 }
 
 

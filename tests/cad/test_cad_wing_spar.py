@@ -146,6 +146,93 @@ def test_block_may_have_a_fillet():
     assert lost == pytest.approx((1 - np.pi / 4) * 20**2 * 2010, rel=0.2)
 
 
+def test_table_of_a_cubic_is_the_cubic(tmp_path):
+    """A cubic spline repeats a cubic where its third derivative may not jump at the ends, as text and as a file."""
+
+    def g(y):
+        return 1e-8 * y**3 - 3e-5 * y**2 + 0.05 * y
+
+    y = np.array([0, 300, 700, 1200, 1600, 2100.0])
+    text = ",".join(f"{at!r}:{value!r}" for at, value in zip(y.tolist(), g(y).tolist(), strict=True))
+    file = tmp_path / "profile.csv"
+    file.write_text("y,g\n" + "\n".join(pair.replace(":", ",") for pair in text.split(",")) + "\n")
+    for table in (text, str(file)):
+        shape = wing_spar.build(**SHORT, wing_profile="table", wing_table=table, deviation="none")
+        x, at, z = crease_points(shape).T
+        assert np.abs(z - g(at)).max() < 1e-8
+        assert np.abs(x - z).max() < 1e-9
+    shape = wing_spar.build(**SHORT, wing_profile="flat", deviation="table", deviation_table=text)
+    x, at, z = crease_points(shape).T
+    assert np.abs(x - g(at)).max() < 1e-8
+    given = wing_spar.build(**SHORT, wing_profile="flat", deviation="none", spar_profile="table", spar_table=text)
+    assert np.abs(crease_points(given) - crease_points(shape)).max() == 0
+
+
+def test_table_follows_the_real_wing():
+    """Points 250 mm apart: their spline repeats the profile they were taken from to the fourth order."""
+    y = np.linspace(0, 14000, 57)
+    g_w = 0.047227544 * y + 0.220721648 * 3731.291642 * (1 - np.exp(-y / 3731.291642))
+    table = ",".join(f"{at!r}:{value!r}" for at, value in zip(y.tolist(), g_w.tolist(), strict=True))
+    found = crease_points(wing_spar.build(wing_profile="table", wing_table=table))
+    assert np.abs(found - crease_points(wing_spar.build())).max() < 2e-3
+
+
+@pytest.mark.parametrize("angle_deg", [30.0, 60.0, 90.0, 120.0])
+def test_spar_at_any_angle_is_origami_by_construction(angle_deg):
+    """Either side's ruling makes the same angle with the crease: unfolded, the two sheets are one."""
+    shape = wing_spar.build(**SHORT, spar_angle_deg=angle_deg, deviation="none")
+    (crease,) = [
+        edge
+        for edge in shape.ctx.tags["wing"].val().Edges()
+        if any(edge.isSame(other) for other in shape.ctx.tags["spar"].val().Edges())
+    ]
+    tangent = np.array([crease.tangentAt(t).toTuple() for t in np.linspace(0, 1, 21)])
+    angle = np.radians(angle_deg)
+    along_spar = np.array([-np.cos(angle), 0, -np.sin(angle)])
+    assert np.abs(tangent @ along_spar + tangent[:, 0]).max() < 1e-6
+    assert np.abs(tangent[:, 0]).min() > 0.01  # nor is it trivially so
+    surface = BRepAdaptor_Surface(shape.ctx.tags["spar"].val().wrapped)
+    u, v = (np.linspace(*ends, 5) for ends in ((0, 2000), (surface.FirstVParameter(), surface.LastVParameter())))
+    for at in u:
+        line = np.array([surface.Value(at, across).Coord() for across in v])
+        steps = np.diff(line, axis=0)
+        assert np.abs(np.cross(steps, along_spar)).max() < 1e-9
+        assert np.linalg.norm(steps, axis=1).sum() == pytest.approx(250, abs=1e-9)
+    normal = np.array(shape.ctx.tags["spar"].val().normalAt().toTuple())
+    assert normal @ [-np.sin(angle), 0, np.cos(angle)] > 0.9  # away from the tool
+
+
+def test_c_section_has_a_rear_spar_that_mirrors_the_front():
+    both = {**SHORT, "rear_spar": True, "chord": 3000.0}
+    shape = wing_spar.build(**both)
+    assert list(shape.ctx.tags) == ["wing", "spar", "rear_spar"]
+    assert shape.val().isValid()
+    front, rear = (shape.ctx.tags[name].val() for name in ("spar", "rear_spar"))
+    assert front.Area() == pytest.approx(rear.Area(), rel=1e-9)
+    assert rear.normalAt().x > 0.9
+    middle, reflected = front.Center(), rear.Center()
+    assert (3000 - reflected.x, reflected.y, reflected.z) == pytest.approx(middle.toTuple(), abs=1e-4)
+    parallel = wing_spar.build(**{**both, "rear_profile": "parallel"})
+    assert parallel.ctx.tags["rear_spar"].val().Center().x == pytest.approx(middle.x + 3000, abs=1e-4)
+    for name, axis in (("wing", 0), ("spar", 2), ("rear_spar", 2)):
+        surface = BRepAdaptor_Surface(shape.ctx.tags[name].val().wrapped)
+        across = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), 5)
+        for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), 21):
+            line = np.array([surface.Value(u, v).Coord() for v in across])
+            assert np.ptp(np.delete(line, axis, axis=1), axis=0).max() < 1e-9
+
+
+def test_c_section_with_fillets_and_as_a_block():
+    both = {**SHORT, "rear_spar": True, "chord": 3000.0, "fillet_radius": 20.0}
+    shape, block = wing_spar.build(**both), wing_spar.build(**both, block=True)
+    assert list(shape.ctx.tags) == ["wing", "spar", "rear_spar", "fillet", "rear_fillet"]
+    assert shape.val().isValid()
+    assert shape.ctx.tags["fillet"].val().Area() == pytest.approx(shape.ctx.tags["rear_fillet"].val().Area(), rel=1e-4)
+    assert block.val().ShapeType() == "Solid"
+    assert block.val().isValid()
+    assert all(tagged.val() in block.val().Faces() for tagged in block.ctx.tags.values())
+
+
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
@@ -158,6 +245,28 @@ def test_block_may_have_a_fillet():
         ({"wing_profile": "arc", "wing_radius": 14000.0}, "wing_radius=14000.0: must be larger than the span"),
         ({"fillet_radius": 1000.0}, "fillet_radius=1000.0: must be 0"),
         ({"deviation": "ripple", "wavelength": 1.0, "c": 5.0}, "the profiles change too fast"),
+        ({"span": 14.0, "chord": 3.0, "spar_height": 1.0}, "span=14.0: lengths are in mm"),
+        ({"spar_height": 4000.0}, "spar_height=4000.0: the spar is higher than the wing is wide, chord=3000.0"),
+        ({"spar_angle_deg": 0.0}, "spar_angle_deg=0.0: must lie between 0 and 180"),
+        (
+            {"spar_angle_deg": 170.0, "chord": 980.0, "spar_height": 980.0, "rear_spar": True},
+            "chord=980.0: the front and",
+        ),
+        ({"rear_spar": True}, "chord=3000.0: the front and the rear spar cross at y = 9282 mm; raise chord"),
+        ({"rear_spar": True, "rear_profile": "none"}, "rear_profile='none' is not known: mirror, parallel"),
+        ({"wing_profile": "table"}, "wing_table='': give at least two points, such as 0:0,14000:100"),
+        (
+            {"wing_profile": "table", "wing_table": "0:0,9000:1,9000:2"},
+            "wing_table: y must increase, but 9000 follows 9000",
+        ),
+        ({"wing_profile": "table", "wing_table": "0:0,9000:1"}, "wing_table reaches from y = 0 to 9000 mm"),
+        ({"deviation": "table", "deviation_table": "0:0,1:2:3"}, "deviation_table: '1:2:3' is not a point y:g"),
+        ({"deviation": "table", "deviation_table": "0:0,14000:nan"}, "deviation_table: '14000:nan' is not a point y:g"),
+        (
+            {"deviation": "table", "deviation_table": "none.csv"},
+            "deviation_table='none.csv' cannot be read: No such file",
+        ),
+        ({"fillet_radius": 900.0}, "fillet_radius=900.0: no such fillet fits along the crease"),
     ],
 )
 def test_parameters_that_make_no_wing_are_refused(parameters, message):

@@ -1,0 +1,128 @@
+"""meshdrape mould NAME -o FILE: a mould from one of the scripts that come with the package."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from meshdrape.cli.main import DONE
+from meshdrape.cli.options import add_parameters, add_tolerances, parameters_set
+from meshdrape.errors import FileError
+
+if TYPE_CHECKING:
+    from meshdrape.mould.library import Script
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("name", nargs="?", metavar="NAME", help="which mould; none: list them")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to: .step, .stp, .brep, .brp or .stl")
+    group = parser.add_argument_group("the mould")
+    add_parameters(group)
+    add_tolerances(group)
+    told = parser.add_argument_group("what there is")
+    told.add_argument("--list", action="store_true", help="list the moulds")
+    told.add_argument("--parameters", action="store_true", help="list the parameters of the mould")
+    parser.add_argument("--json", action="store_true", help="print as JSON")
+
+
+def run(options: argparse.Namespace, arguments: list[str]) -> int:
+    """List the moulds, or the parameters of one, or make one and write it."""
+    del arguments
+    from meshdrape.mould import library
+
+    if options.list or options.name is None:
+        if options.output or options.set or options.parameters:
+            msg = f"which mould? give one of {', '.join(library.scripts())}"
+            raise FileError(msg)
+        moulds = {name: script.summary for name, script in library.scripts().items()}
+        _say(options, moulds, _columns(moulds))
+        return DONE
+    script = library.script(options.name)
+    if options.parameters:
+        listed = [
+            {"name": parameter.name, "default": parameter.default, "meaning": parameter.meaning}
+            for parameter in script.parameters
+        ]
+        rows = {f"{one['name']}={one['default']}": one["meaning"] for one in listed}
+        told = {"mould": script.name, "summary": script.summary, "parameters": listed}
+        _say(options, told, [script.summary, *_columns(rows)])
+        return DONE
+    if options.output is None:
+        msg = f"where to? give -o {script.name}.step (or .brep, .stl), or --parameters to list what can be set"
+        raise FileError(msg)
+    facts = _make(script, options)
+    _say(options, facts, _report(facts))
+    return DONE
+
+
+def _make(script: Script, options: argparse.Namespace) -> dict[str, Any]:
+    """Make the mould, write it, and return what there is to say of it."""
+    from meshdrape.mould import export, library
+    from meshdrape.mould.brep import cad_faces
+    from meshdrape.output.files import atomic_write, check_target
+
+    target = Path(options.output)
+    suffix = target.suffix.lower()
+    if suffix not in export.SUFFIXES:
+        msg = f"{target} has the suffix {suffix or '(none)'}; a mould is written as {' '.join(export.SUFFIXES)}"
+        raise FileError(msg)
+    check_target(target)
+    parameters = parameters_set(options)
+    shape = library.build_shape(script.name, parameters)
+    mould = None
+    if suffix == ".stl":
+        mould = export.tessellated(shape, f"mould {script.name}", options.chord_tolerance, options.angle_tolerance)
+        content = export.stl_bytes(mould, script.name)
+    else:
+        content = export.brep_bytes(shape) if suffix in (".brep", ".brp") else export.step_bytes(shape, script.name)
+    with atomic_write(target) as file:
+        file.write(content)
+    faces = cad_faces(shape)
+    return {
+        "mould": script.name,
+        "file": str(target),
+        "parameters": {one.name: one.value(parameters.get(one.name, one.default)) for one in script.parameters},
+        "size_mm": list(export.extents(shape)),
+        "area_mm2": sum(face.area for face in faces),
+        "triangles": None if mould is None else len(mould.triangles),
+        "faces": [
+            {
+                "id": face.id,
+                "name": face.name,
+                "kind": face.kind,
+                "area_mm2": face.area,
+                "developable": face.developable,
+            }
+            for face in faces
+        ],
+    }
+
+
+def _report(facts: dict[str, Any]) -> list[str]:
+    size = " x ".join(f"{v:,.1f}" for v in facts["size_mm"])
+    lines = [f"{facts['mould']}: {size} mm, area {facts['area_mm2'] / 1e6:.4g} m2"]
+    if facts["triangles"] is not None:
+        lines[0] += f", {facts['triangles']:,} triangles"
+    lines += [
+        f"  face {face['id']:>2}  {face['name'] or '':12}  {face['kind']:10}  {face['area_mm2']:>14,.1f} mm2  "
+        f"{'unrolls' if face['developable'] else 'does not unroll'}"
+        for face in facts["faces"]
+    ]
+    return [*lines, f"  wrote    {facts['file']}"]
+
+
+def _columns(rows: dict[str, str]) -> list[str]:
+    width = max(map(len, rows), default=0)
+    return [f"  {name:{width}}  {text}" for name, text in rows.items()]
+
+
+def _say(options: argparse.Namespace, facts: dict[str, Any], lines: list[str]) -> None:
+    if options.json:
+        from meshdrape.output import json_text
+
+        sys.stdout.write(json_text(facts))
+    else:
+        sys.stdout.write("\n".join(lines) + "\n")
