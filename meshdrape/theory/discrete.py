@@ -66,29 +66,31 @@ def _entries(sheet: Sheet) -> ComplexArray:
         gap = end_b - end_a
         area = (np.conj(rate_a) * rate_b).imag
         step_a, step_b = (np.conj(gap) * rate_b).imag / area, (np.conj(gap) * rate_a).imag / area
+        done = _done(sheet, y_a, step_a) and _done(sheet, y_b, step_b)
         y_a, y_b = y_a + step_a, y_b + step_b
-        if _small(step_a, d) and _small(step_b, d):
+        if done:
             break
     else:
-        raise _cannot(sheet, y_a, np.maximum(np.abs(step_a), np.abs(step_b)))
+        raise _cannot(sheet, y_a)
     place[top] = _across(fold, d, a, y_a)[0]
     # further rows that enter in the same column hang from the one above, which is on the spar by now
-    level = i * 0
+    level = np.zeros(len(i), dtype=np.int64)
     if not top.all():
         for k in np.flatnonzero(~top):  # entries of a column are listed from the top
             level[k] = level[k - 1] + 1
     for depth in range(1, int(level.max(initial=0)) + 1):
-        k = np.flatnonzero(level == depth)
-        p, parent, y = left[k], place[k - 1], sheet.entry_y[k]
+        hung = np.flatnonzero(level == depth)
+        p, parent, y = left[hung], place[hung - 1], sheet.entry_y[hung]
         for _ in range(_STEPS):
             end, rate = _across(fold, d, p, y)
             step = _onto_circle(end - parent, rate, d)
+            done = _done(sheet, y, step)
             y = y + step
-            if _small(step, d):
+            if done:
                 break
         else:
-            raise _cannot(sheet, y, np.abs(step))
-        place[k] = _across(fold, d, p, y)[0]
+            raise _cannot(sheet, y)
+        place[hung] = _across(fold, d, p, y)[0]
     return place
 
 
@@ -140,11 +142,10 @@ def _drift(sheet: Sheet, entries: ComplexArray) -> ComplexArray:
             drift[i] = total
             for row, p in entered[i]:
                 start[row] = p - total
-        step_array = np.array(steps)
-        y = y + step_array
-        if _small(step_array, d):
+        if _done(sheet, y, np.array(steps)):
             return np.array(drift)
-    raise _cannot(sheet, y, np.abs(step_array))
+        y = y + np.array(steps)
+    raise _cannot(sheet, y)
 
 
 def _onto_circle(away: ComplexArray, rate: ComplexArray, radius: float) -> FloatArray:
@@ -156,15 +157,16 @@ def _onto_circle(away: ComplexArray, rate: ComplexArray, radius: float) -> Float
     return np.asarray(-excess / (inward + np.copysign(root, inward)))
 
 
-def _small(step: FloatArray, spacing: float) -> bool:
-    # Newton's method is quadratic: what is left after such a step is round-off
-    return bool((np.abs(step) < 1e-8 * spacing).all())
+def _done(sheet: Sheet, y: FloatArray, step: FloatArray) -> bool:
+    """Whether Newton's method is at its end; it is quadratic, what is left after so small a step is round-off."""
+    strayed = ~(np.abs(step) < 10 * sheet.spacing)
+    if strayed.any():
+        raise _cannot(sheet, y[strayed])
+    return bool((np.abs(step) < 1e-8 * sheet.spacing).all())
 
 
-def _cannot(sheet: Sheet, y: FloatArray, step: FloatArray) -> NetError:
-    worst = int(np.argmax(np.where(np.isfinite(step), step, np.inf)))
-    station = float(sheet.y[int(np.argmin(np.abs(sheet.y - np.nan_to_num(y[worst]))))])
+def _cannot(sheet: Sheet, y: FloatArray) -> NetError:
     return NetError(
-        f"near y = {station:.6g} no link of {sheet.spacing:g} can be laid across the crease: it turns too fast for "
-        "this spacing; lower the spacing"
+        f"near y = {y[0]:.6g} no link of length {sheet.spacing:g} can be laid across the crease: it turns too fast for this "
+        "spacing; lower the spacing"
     )

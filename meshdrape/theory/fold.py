@@ -7,17 +7,37 @@ Lengths are pure numbers of any one unit, angles radians.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import DesignError
 from meshdrape.theory.profiles import Profile
-from meshdrape.theory.quadrature import FloatArray, Primitive
+from meshdrape.theory.quadrature import FloatArray, Primitive, running_integral
 
 ComplexArray = NDArray[np.complex128]
+
+
+class Tables(NamedTuple):
+    """Smooth functions from 2048 pieces, to about 1e-11 of the span, where thousands of values are wanted at once.
+
+    Attributes
+    ----------
+    drift : function of y
+        `Fold.drift`, complex.
+    crease_height : function of s_s
+        g_w above a place of the flat spar.
+    crease_slope : function of s_s
+        Its derivative.
+    """
+
+    drift: Callable[[FloatArray], ComplexArray]
+    crease_height: Callable[[FloatArray], FloatArray]
+    crease_slope: Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +62,7 @@ class Fold:
 
     @property
     def span(self) -> float:
-        """y runs from 0 to here."""
+        """Where y ends; it starts at 0."""
         return self.wing.span
 
     def alpha(self, y: ArrayLike) -> FloatArray:
@@ -89,7 +109,11 @@ class Fold:
     @cached_property
     def _drift(self) -> Primitive:
         breaks = sorted({*self.wing.knots, *self.spar.knots})
-        return Primitive(lambda y: np.exp(1j * self.psi(y)) * self.wing.stretch(y), breaks)
+        return Primitive(self.drift_rate, breaks)
+
+    def drift_rate(self, y: ArrayLike) -> ComplexArray:
+        """dH/dy = exp(i ψ) ds_w/dy."""
+        return np.asarray(np.exp(1j * self.psi(y)) * self.wing.stretch(y))
 
     def drift(self, y: ArrayLike) -> ComplexArray:
         """The shape of every row on the spar: H(y) = ∫ exp(i ψ) ds_w from 0.
@@ -99,6 +123,19 @@ class Fold:
         ``spar_edge(y0) + drift(y1) - drift(y0)``.
         """
         return np.asarray(self._drift(y), dtype=np.complex128)
+
+    @cached_property
+    def tables(self) -> Tables:
+        """The drift and the height of the crease as tables."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        fine = np.linspace(0.0, self.span, 2049)
+        y = np.unique(np.concatenate([[-self.span], fine, self.wing.breaks, self.spar.breaks, [2 * self.span]]))
+        rate = self.drift_rate(y)
+        height = CubicHermiteSpline(
+            running_integral(self.spar.stretch, y), self.wing(y), self.wing.slope(y) / self.spar.stretch(y)
+        )
+        return Tables(CubicHermiteSpline(y, running_integral(self.drift_rate, y), rate), height, height.derivative())
 
     # --- into space -------------------------------------------------------------------------------------------------
 
@@ -131,3 +168,13 @@ class Fold:
     def reversed(self) -> Fold:
         """The mould with y' = span - y, for a sheet whose rows start at the tip; both profiles 0 there."""
         return Fold(self.wing.reversed(), self.spar.reversed())
+
+    def from_swapped(self, points: ArrayLike) -> FloatArray:
+        """Points (..., 3) of `swapped` in this fold's coordinates."""
+        x, y, z = np.moveaxis(np.asarray(points, dtype=np.float64), -1, 0)
+        return np.stack([-z, y, -x], axis=-1)
+
+    def from_reversed(self, points: ArrayLike) -> FloatArray:
+        """Points (..., 3) of `reversed` in this fold's coordinates."""
+        x, y, z = np.moveaxis(np.asarray(points, dtype=np.float64), -1, 0)
+        return np.stack([x + self.spar(self.span), self.span - y, z + self.wing(self.span)], axis=-1)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import DesignError
-from meshdrape.theory.quadrature import FloatArray, Primitive
+from meshdrape.theory.quadrature import FloatArray, Primitive, largest, running_integral
 
 Function = Callable[[FloatArray], FloatArray]
 
@@ -82,7 +82,7 @@ class Profile:
 
         fine = np.linspace(0.0, self.span, 4097)
         y = np.unique(np.concatenate([[-self.span], fine, self.breaks, [2 * self.span]]))
-        return CubicHermiteSpline(self._arc(y), y, 1 / self.stretch(y))
+        return CubicHermiteSpline(running_integral(self.stretch, y), y, 1 / self.stretch(y))
 
     def arc_length(self, y: ArrayLike) -> FloatArray:
         """Arc length from y = 0 to each y, to round-off."""
@@ -96,7 +96,7 @@ class Profile:
         """`at_arc_length` from a table of 4096 pieces, to 1e-11 of the span: for drawing and for whole nets."""
         return np.asarray(self._arc_table(np.asarray(s, dtype=np.float64)))
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Arc length of the whole span."""
         return float(self._arc(np.array([self.span]))[0])
@@ -104,8 +104,6 @@ class Profile:
     @cached_property
     def largest_bend(self) -> float:
         """Largest |d²g/dy²| over the span."""
-        from meshdrape.theory.quadrature import largest
-
         return largest(lambda y: np.abs(self.bend(y)), 0.0, self.span)[0]
 
     def reversed(self) -> Profile:
@@ -153,12 +151,12 @@ class Profile:
 
 
 def flat(span: float) -> Profile:
-    """g = 0."""
+    """The profile g = 0."""
     return Profile(span, lambda y: 0 * y, lambda y: 0 * y, lambda y: 0 * y)
 
 
 def quadratic(a: float, span: float) -> Profile:
-    """g = a y², a in 1/length."""
+    """The profile g = a y², a in 1/length."""
     _finite(a=a)
     return Profile(span, lambda y: a * y * y, lambda y: 2 * a * y, lambda y: 2 * a + 0 * y)
 
@@ -244,23 +242,23 @@ def table(y: ArrayLike, g: ArrayLike, span: float | None = None) -> Profile:
 
 
 def no_deviation(span: float) -> Profile:
-    """f = 0: the origami fold, equation (3) of the study group report."""
+    """No deviation, f = 0: the origami fold, equation (3) of the study group report."""
     return flat(span)
 
 
 def linear_deviation(c: float, span: float) -> Profile:
-    """f = c y: a spar that is tilted."""
+    """A spar that is tilted, f = c y."""
     _finite(c=c)
     return Profile(span, lambda y: c * y, lambda y: c + 0 * y, lambda y: 0 * y)
 
 
 def parabola_deviation(c: float, span: float) -> Profile:
-    """f = c y² / (2 span): the slope grows to c at the tip."""
+    """A slope that grows to c at the tip, f = c y² / (2 span)."""
     return quadratic(c / (2 * span), span)
 
 
 def sine_deviation(c: float, wavelength: float, span: float) -> Profile:
-    """f = c sin(2π y / wavelength)."""
+    """A sine, f = c sin(2π y / wavelength)."""
     k = _wave_number(c, wavelength)
     return Profile(
         span, lambda y: c * np.sin(k * y), lambda y: c * k * np.cos(k * y), lambda y: -c * k * k * np.sin(k * y)
@@ -268,7 +266,7 @@ def sine_deviation(c: float, wavelength: float, span: float) -> Profile:
 
 
 def sin2_slope_deviation(c: float, span: float) -> Profile:
-    """f' = c sin²(π y / span), f(0) = 0."""
+    """A slope that comes and goes once, f' = c sin²(π y / span)."""
     k = _wave_number(c, span)
     return Profile(
         span,
@@ -279,7 +277,7 @@ def sin2_slope_deviation(c: float, span: float) -> Profile:
 
 
 def bump_deviation(c: float, length: float, span: float) -> Profile:
-    """f = c r² exp(1 - r²), r = y / length: a bump of height c at y = length."""
+    """A bump of height c at y = length: f = c r² exp(1 - r²), r = y / length."""
     if not length > 0:
         msg = f"length={length}: must be positive"
         raise DesignError(msg)
@@ -301,7 +299,7 @@ def bump_deviation(c: float, length: float, span: float) -> Profile:
 
 
 def ripple_deviation(c: float, wavelength: float, span: float) -> Profile:
-    """f = c (1 - cos(2π y / wavelength))."""
+    """Waves that start level, f = c (1 - cos(2π y / wavelength))."""
     k = _wave_number(c, wavelength)
     return Profile(
         span,

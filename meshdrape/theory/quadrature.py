@@ -12,6 +12,7 @@ FloatArray = NDArray[np.float64]
 Array = NDArray[Any]  # float64 or complex128
 
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(10)
+_NODE_4, _WEIGHT_4 = np.polynomial.legendre.leggauss(4)
 
 
 class Primitive:
@@ -72,7 +73,19 @@ class Primitive:
         return np.asarray(at)
 
 
-def largest(function: Callable[[FloatArray], FloatArray], low: float, high: float, n: int = 2001) -> tuple[float, float]:
+def running_integral(integrand: Callable[[FloatArray], Array], at: FloatArray) -> Array:
+    """The integral from 0 to each of many ascending points that lie close together and have 0 among them.
+
+    Four Gauss points a piece: an error of order 9 in its width.
+    """
+    half = np.diff(at)[:, None] / 2
+    total = np.concatenate([[0.0], np.cumsum((half * integrand(at[:-1, None] + half * (1 + _NODE_4))) @ _WEIGHT_4)])
+    return np.asarray(total - total[np.searchsorted(at, 0.0)])
+
+
+def largest(
+    function: Callable[[FloatArray], FloatArray], low: float, high: float, n: int = 2001
+) -> tuple[float, float]:
     """The largest value of a function on [low, high] and where it is taken.
 
     Sampled at n points and again, finer, about the best of them: right to round-off where the highest peak is
@@ -89,7 +102,10 @@ def largest(function: Callable[[FloatArray], FloatArray], low: float, high: floa
 
 
 def root_between(
-    function: Callable[[FloatArray], FloatArray], slope: Callable[[FloatArray], FloatArray], low: ArrayLike, high: ArrayLike
+    function: Callable[[FloatArray], FloatArray],
+    slope: Callable[[FloatArray], FloatArray],
+    low: ArrayLike,
+    high: ArrayLike,
 ) -> FloatArray:
     """A zero of a function between each pair of bounds, where it goes from not positive to positive.
 

@@ -65,9 +65,7 @@ class Sheet:
         Nodes where a row comes back to the wing: the ill-posed case at the end of section 3.4.
     """
 
-    def __init__(
-        self, fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, row_offset: float = 0.5
-    ) -> None:
+    def __init__(self, fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, row_offset: float = 0.5) -> None:
         if not 0 < spacing <= fold.span / 2:
             msg = f"spacing={spacing}: must be positive and at most half the span, {fold.span / 2}"
             raise DesignError(msg)
@@ -80,7 +78,9 @@ class Sheet:
         self.fold, self.spacing, self.height, self.row_offset = fold, spacing, height, row_offset
         self.gamma = float(fold.psi(0.0)) if gamma == "free" else float(gamma)
         if not abs(self.gamma) < np.pi / 2:
-            msg = f"gamma={self.gamma} rad: the left-most ribbon must run down the spar, less than π/2 from the vertical"
+            msg = (
+                f"gamma={self.gamma} rad: the left-most ribbon must run down the spar, less than π/2 from the vertical"
+            )
             raise DesignError(msg)
         count = int(np.floor(fold.wing.length / spacing * (1 + 1e-12))) + 1
         self.s = spacing * np.arange(count)
@@ -124,7 +124,7 @@ class Sheet:
 
     def ribbon(self) -> ComplexArray:
         """Places of the left-most spar ribbon's nodes, (rows,); only those on the spar mean anything."""
-        return self.spar_corner - 1j * np.exp(1j * self.gamma) * (self.corner - self.x)
+        return np.asarray(self.spar_corner - 1j * np.exp(1j * self.gamma) * (self.corner - self.x))
 
     def net(self, entry_place: ComplexArray, drift: ComplexArray) -> FoldNet:
         """The net, from where its rows enter the spar, (m,), and what its columns add, (n,)."""
