@@ -7,8 +7,8 @@ column links of a row the same for all columns: a node is where its row entered 
     P(y0, y1) = spar_edge(y0) + H(y1) - H(y0),   H(y) = ∫ exp(i ψ) ds_w
 
 for a row that crosses at y0 and a column that crosses at y1. Nothing is solved but where a straight row meets the
-crease curve, g_s(y0) = x. The shear of a cell is the angle between its sides. Since d spar_edge - dH = i exp(i ψ) dx, the
-column link of a cell has the mean of the turn over the width of its row, and the row link that over its column.
+crease curve, g_s(y0) = x. The shear of a cell is the angle between its sides. Since d spar_edge - dH = i exp(i ψ) dx,
+the column link of a cell has the mean of the turn over the width of its row, the row link that over its column.
 
 Section 6.3 draws the crease straight at the scale of a cell; here it is the curve itself, sampled at the lattice: the
 limit of the discrete net, which `discrete_net` builds exactly. A cell that straddles the crease is no plane rhombus in

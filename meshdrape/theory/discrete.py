@@ -167,6 +167,6 @@ def _done(sheet: Sheet, y: FloatArray, step: FloatArray) -> bool:
 
 def _cannot(sheet: Sheet, y: FloatArray) -> NetError:
     return NetError(
-        f"near y = {y[0]:.6g} no link of length {sheet.spacing:g} can be laid across the crease: it turns too fast for this "
-        "spacing; lower the spacing"
+        f"near y = {y[0]:.6g} no link of length {sheet.spacing:g} can be laid across the crease: it turns too fast for "
+        "this spacing; lower the spacing"
     )

@@ -116,7 +116,7 @@ def _first_return(fold: Fold, y0: FloatArray) -> FloatArray:
     """Where the row of each y0 comes back to the crease (section 3.4: ill-posed there), or the tip."""
     fine = np.linspace(0.0, fold.span, 2049)
     x = fold.spar(fine)
-    if (np.diff(x) >= 0).all():
+    if (np.diff(x) > 0).all():
         return np.full(len(y0), fold.span)
     level = fold.spar(y0)
     back = (fine > y0[:, None]) & (x <= level[:, None])
