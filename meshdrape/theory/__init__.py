@@ -4,9 +4,16 @@ Lengths are pure numbers of any one unit, angles radians. From profiles to answe
 
     profiles -> fold -> sheet -> characteristics | discrete     the net over the fold (sections 3, 6)
                      -> criteria, reach                         the largest shear, by each formula (sections 4, 6)
+                     -> perturbation, flat_spar                 near the origami fold; the flat spar (sections 4, 5)
+    ribbons                                                     the locking angle (figure 2)
+    continuum -> weak, apex, reference_nets                     the smooth net on a surface (section 7)
+
+Where the report errs, the function that is right says so.
 """
 
+from meshdrape.theory.apex import apex_net, apex_shear, pyramid_angle, pyramid_edges
 from meshdrape.theory.characteristics import characteristic_net
+from meshdrape.theory.continuum import HeightField, SmoothNet, curve_fibre, geodesic, plane_section, smooth_net
 from meshdrape.theory.criteria import (
     PsiRange,
     Station,
@@ -52,8 +59,27 @@ from meshdrape.theory.profiles import (
     table,
 )
 from meshdrape.theory.reach import Pair, Reach, last_column, within_reach
+from meshdrape.theory.reference_nets import (
+    constant_curvature_angle,
+    hypar,
+    hypar_net,
+    locking_extent,
+    pseudosphere_net,
+    sphere_net,
+)
 from meshdrape.theory.ribbons import gap, locking_angle, locking_range, width_for
 from meshdrape.theory.sheet import NEITHER, RIBBON_FED, WING_FED, FoldNet, Gamma, Sheet, Worst
+from meshdrape.theory.weak import (
+    straight_edge_node,
+    straight_edge_sine,
+    straight_edge_turn,
+    weak_nodes,
+    weak_origami_sine,
+    weak_origami_surface,
+    weak_sine,
+    weak_sine_geodesic,
+    weak_surface,
+)
 
 __all__ = [
     "DEVIATIONS",
@@ -64,6 +90,7 @@ __all__ = [
     "Fold",
     "FoldNet",
     "Gamma",
+    "HeightField",
     "Pair",
     "Placements",
     "Profile",
@@ -72,22 +99,31 @@ __all__ = [
     "ScaleCheck",
     "Sheet",
     "SlopeValidity",
+    "SmoothNet",
     "Station",
     "Worst",
+    "apex_net",
+    "apex_shear",
     "arc",
     "bump_deviation",
     "characteristic_net",
+    "constant_curvature_angle",
+    "curve_fibre",
     "discrete_net",
     "expanded_psi",
     "fits_everywhere",
     "flat",
     "flat_spar_shear",
     "gap",
+    "geodesic",
+    "hypar",
+    "hypar_net",
     "last_column",
     "lateral_approach",
     "lateral_approach_linear",
     "linear_deviation",
     "locking_angle",
+    "locking_extent",
     "locking_range",
     "middle_gamma",
     "named_deviation",
@@ -95,7 +131,11 @@ __all__ = [
     "no_deviation",
     "origami_advance",
     "parabola_deviation",
+    "plane_section",
+    "pseudosphere_net",
     "psi_range",
+    "pyramid_angle",
+    "pyramid_edges",
     "quadratic",
     "random_placements",
     "real_wing",
@@ -107,8 +147,19 @@ __all__ = [
     "slope_criterion",
     "slope_shear",
     "slope_validity",
+    "smooth_net",
+    "sphere_net",
+    "straight_edge_node",
+    "straight_edge_sine",
+    "straight_edge_turn",
     "table",
     "turning_points",
+    "weak_nodes",
+    "weak_origami_sine",
+    "weak_origami_surface",
+    "weak_sine",
+    "weak_sine_geodesic",
+    "weak_surface",
     "width_for",
     "wing_fed_bound",
     "within_reach",
