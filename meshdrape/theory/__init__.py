@@ -4,6 +4,7 @@ Lengths are pure numbers of any one unit, angles radians. From profiles to answe
 
     profiles -> fold -> sheet -> characteristics | discrete     the net over the fold (sections 3, 6)
                      -> criteria, reach                         the largest shear, by each formula (sections 4, 6)
+                     -> posedness                               where rows come back or graze (section 3.4)
                      -> perturbation, flat_spar                 near the origami fold; the flat spar (sections 4, 5)
     ribbons                                                     the locking angle (figure 2)
     continuum -> weak, apex, reference_nets                     the smooth net on a surface (section 7)
@@ -39,6 +40,7 @@ from meshdrape.theory.perturbation import (
     slope_shear,
     slope_validity,
 )
+from meshdrape.theory.posedness import Return, grazing_rows, returning_rows
 from meshdrape.theory.profiles import (
     DEVIATIONS,
     PROFILES,
@@ -96,6 +98,7 @@ __all__ = [
     "Profile",
     "PsiRange",
     "Reach",
+    "Return",
     "ScaleCheck",
     "Sheet",
     "SlopeValidity",
@@ -116,6 +119,7 @@ __all__ = [
     "flat_spar_shear",
     "gap",
     "geodesic",
+    "grazing_rows",
     "hypar",
     "hypar_net",
     "last_column",
@@ -139,6 +143,7 @@ __all__ = [
     "quadratic",
     "random_placements",
     "real_wing",
+    "returning_rows",
     "ribbon_fed_bound",
     "ripple_deviation",
     "separation_of_scales",

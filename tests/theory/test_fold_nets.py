@@ -170,10 +170,8 @@ def test_gamma_moves_only_ribbon_fed_cells(build):
     rows = min(len(first.sheet.x), len(second.sheet.x)) - 1
     fed = first.region[:, :rows] == WING_FED
     assert np.array_equal(fed, second.region[:, :rows] == WING_FED)
-    if build is characteristic_net:
-        assert np.array_equal(first.shear[:, :rows][fed], second.shear[:, :rows][fed])
-    else:  # the drift of the first columns, whose link starts on the left ribbon, reaches all nodes by round-off only
-        assert np.abs(first.shear[:, :rows][fed] - second.shear[:, :rows][fed]).max() < 1e-9
+    assert fed.sum() > 1000
+    assert np.array_equal(first.shear[:, :rows][fed], second.shear[:, :rows][fed])
     ribbon = (first.region == RIBBON_FED)[:, :rows] & (second.region == RIBBON_FED)[:, :rows]
     turned = second.shear[:, :rows][ribbon] - first.shear[:, :rows][ribbon]
     assert turned == pytest.approx(-0.02, abs=1e-4)
