@@ -62,7 +62,10 @@ class Sheet:
     entry_y : (m,) float
         where they cross it.
     exit_column, exit_row : (k,) int
-        Nodes where a row comes back to the wing: the ill-posed case at the end of section 3.4.
+        Nodes where a row comes back to the wing: the ill-posed case at the end of section 3.4. The sheet is taken to
+        lie undeformed on the wing all the same; the row's link to such a node has not the right length.
+    last_exit : (n, rows) int
+        Column of the row's latest exit, 0 for none.
     """
 
     def __init__(self, fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, row_offset: float = 0.5) -> None:
@@ -102,6 +105,9 @@ class Sheet:
         self.entry_y = root_between(lambda y: fold.spar(y) - x, fold.spar.slope, self.y[k - 1], self.y[k])
         self.exit_column, self.exit_row = np.nonzero(self.on_spar[:-1] & ~self.on_spar[1:])
         self.exit_column = self.exit_column + 1
+        left = np.zeros(self.on_spar.shape, dtype=np.int64)
+        left[self.exit_column, self.exit_row] = self.exit_column
+        self.last_exit = np.maximum.accumulate(left, axis=0)
 
     @cached_property
     def drift(self) -> ComplexArray:
@@ -143,6 +149,11 @@ class Sheet:
         shear = np.where(straddles == 4, shear, np.where(straddles == 0, 0.0, np.nan))
         upper, lower = self.entry[:-1, :-1] == 0, self.entry[:-1, 1:] == 0
         fed = np.where(upper & lower, RIBBON_FED, np.where(upper | lower, NEITHER, WING_FED))
+        # the upper row has been back on the wing since the lower one came over: they are not linked by one spacing;
+        # nor does a column keep its links through which a row goes back
+        torn = self.last_exit[:-1, :-1] > self.entry[:-1, 1:]
+        torn[self.exit_column - 1] = True
+        fed = np.where(torn, NEITHER, fed)
         region = np.where(straddles == 4, fed, NEITHER).astype(np.int8)
         return FoldNet(self, place, shear, region)
 
@@ -161,7 +172,7 @@ class FoldNet:
         that is ψ of the row less ψ of the column. 0 on the wing, NaN in cells that straddle the crease.
     region : (n - 1, rows - 1) int8
         1 where both rows of a cell of the spar start on the left ribbon, 2 where both come from the wing, 0 neither:
-        on the wing, across the crease, and between a row of either kind.
+        on the wing, across the crease, between a row of either kind, and beside rows that have been back on the wing.
     """
 
     sheet: Sheet

@@ -84,7 +84,10 @@ def test_within_reach_is_the_limit_of_the_net(name, height):
     short = []
     for spacing in (0.04, 0.02, 0.01):
         net = characteristic_net(fold, spacing, height)
-        found = [net.max_shear(k).shear for k in (WING_FED, RIBBON_FED)]
+        # the first column is turned by the kink of the ribbon at the corner, which is no matter of spacing
+        fed = (net.region == RIBBON_FED) & net.within
+        fed[0] = False
+        found = net.max_shear(WING_FED).shear, np.abs(net.shear[fed]).max()
         short.append([reach.wing_fed.shear - found[0], reach.ribbon_fed.shear - found[1]])
     short = np.degrees(short)
     assert (short > -1e-9).all(), short

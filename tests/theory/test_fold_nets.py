@@ -23,6 +23,7 @@ from meshdrape.theory import (
     quadratic,
     real_wing,
     ripple_deviation,
+    wing_fed_bound,
 )
 
 FIGURE_4 = Fold(quadratic(0.2, 1.0), quadratic(0.4, 1.0))
@@ -256,6 +257,21 @@ def test_rows_that_come_back_to_the_wing_are_named():
     falling = ((y > 1) & (y < 2.03)) | ((y > 3) & (y < 4.03))
     assert falling.all()
     assert (fold.spar.slope(sheet.entry_y) > 0).all()
+
+
+@pytest.mark.parametrize("build", BOTH)
+@pytest.mark.parametrize("spacing", [0.02, 0.01])
+def test_regions_leave_out_what_rows_that_come_back_tear(build, spacing):
+    """No cell that is counted shears by more than all of ψ, though of the others some may."""
+    fold = real_fold("sine", c=0.05, wavelength=3.5)
+    net = build(fold, spacing, 1.0)
+    assert len(net.sheet.exit_row) > 0
+    bound = wing_fed_bound(fold)
+    assert net.max_shear(WING_FED).shear == pytest.approx(bound, rel=0.02)
+    assert net.max_shear(WING_FED).shear < bound * 1.0005
+    if build is discrete_net:
+        torn = (net.region == 0) & np.isfinite(net.shear)
+        assert np.abs(net.shear[torn]).max() > bound
 
 
 def test_row_offset_moves_the_rows():
