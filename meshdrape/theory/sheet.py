@@ -18,13 +18,14 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.errors import DesignError
+from meshdrape.errors import DesignError, NetError
 from meshdrape.theory.fold import ComplexArray, Fold
 from meshdrape.theory.quadrature import FloatArray, root_between
 
 Gamma = float | Literal["free"]
 
 NEITHER, RIBBON_FED, WING_FED = 0, 1, 2
+_MOST_NODES = 15_000_000  # some 2 GB of arrays
 
 
 class Worst(NamedTuple):
@@ -69,22 +70,8 @@ class Sheet:
     """
 
     def __init__(self, fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, row_offset: float = 0.5) -> None:
-        if not 0 < spacing <= fold.span / 2:
-            msg = f"spacing={spacing}: must be positive and at most half the span, {fold.span / 2}"
-            raise DesignError(msg)
-        if not height > 0:
-            msg = f"height={height}: must be positive"
-            raise DesignError(msg)
-        if not 0 <= row_offset <= 1:
-            msg = f"row_offset={row_offset}: must lie between 0 and 1"
-            raise DesignError(msg)
         self.fold, self.spacing, self.height, self.row_offset = fold, spacing, height, row_offset
-        self.gamma = float(fold.psi(0.0)) if gamma == "free" else float(gamma)
-        if not abs(self.gamma) < np.pi / 2:
-            msg = (
-                f"gamma={self.gamma} rad: the left-most ribbon must run down the spar, less than π/2 from the vertical"
-            )
-            raise DesignError(msg)
+        self.gamma = _checked(fold, spacing, height, gamma, row_offset)
         count = int(np.floor(fold.wing.length / spacing * (1 + 1e-12))) + 1
         self.s = spacing * np.arange(count)
         self.y = fold.wing.at_arc_length(self.s)
@@ -93,16 +80,24 @@ class Sheet:
         self.spar_corner = complex(0.0, float(fold.wing(0.0)))
         self.first_row = int(np.ceil((self.edge.max() - self.corner) / spacing - row_offset)) + 1
         self.row = np.arange(self.first_row, self._last_row() - 1, -1)
+        if count * len(self.row) > _MOST_NODES:
+            msg = f"spacing={spacing}: a net of {count} x {len(self.row)} nodes is too large; raise the spacing"
+            raise NetError(msg)
         self.x = self.corner + (self.row + row_offset) * spacing
         # a node within 1e-9 spacings of the crease counts as on the spar: its link has no direction on the wing
         self.on_spar = self.x < self.edge[:, None] + 1e-9 * spacing
+        self._cross()
+
+    def _cross(self) -> None:
+        """Find where rows come over the crease and where they go back."""
         new = self.on_spar.copy()
         new[1:] &= ~self.on_spar[:-1]
-        self.entry = np.maximum.accumulate(np.where(new, np.arange(count)[:, None], 0), axis=0)
+        self.entry = np.maximum.accumulate(np.where(new, np.arange(len(self.s))[:, None], 0), axis=0)
         self.entry_column, self.entry_row = (index + 0 for index in np.nonzero(new[1:]))
         self.entry_column += 1
         x, k = self.x[self.entry_row], self.entry_column
-        self.entry_y = root_between(lambda y: fold.spar(y) - x, fold.spar.slope, self.y[k - 1], self.y[k])
+        spar = self.fold.spar
+        self.entry_y = root_between(lambda y: spar(y) - x, spar.slope, self.y[k - 1], self.y[k])
         self.exit_column, self.exit_row = np.nonzero(self.on_spar[:-1] & ~self.on_spar[1:])
         self.exit_column = self.exit_column + 1
         left = np.zeros(self.on_spar.shape, dtype=np.int64)
@@ -156,6 +151,27 @@ class Sheet:
         fed = np.where(torn, NEITHER, fed)
         region = np.where(straddles == 4, fed, NEITHER).astype(np.int8)
         return FoldNet(self, place, shear, region)
+
+
+def _checked(fold: Fold, spacing: float, height: float, gamma: float | str, row_offset: float) -> float:
+    """Refuse what makes no sheet; return gamma in radians."""
+    if not 0 < spacing <= fold.span / 2:
+        msg = f"spacing={spacing}: must be positive and at most half the span, {fold.span / 2}"
+        raise DesignError(msg)
+    if not height > 0:
+        msg = f"height={height}: must be positive"
+        raise DesignError(msg)
+    if not 0 <= row_offset <= 1:
+        msg = f"row_offset={row_offset}: must lie between 0 and 1"
+        raise DesignError(msg)
+    if isinstance(gamma, str) and gamma != "free":
+        msg = f"gamma={gamma!r}: give a number of radians or 'free'; within_reach finds the best one"
+        raise DesignError(msg)
+    turn = float(fold.psi(0.0)) if isinstance(gamma, str) else float(gamma)
+    if not abs(turn) < np.pi / 2:
+        msg = f"gamma={turn} rad: the left-most ribbon must run down the spar, less than π/2 from the vertical"
+        raise DesignError(msg)
+    return turn
 
 
 @dataclass(frozen=True, eq=False)

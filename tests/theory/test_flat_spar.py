@@ -5,9 +5,13 @@ import pytest
 
 from meshdrape.errors import DesignError
 from meshdrape.theory import (
+    RIBBON_FED,
+    WING_FED,
     Fold,
+    characteristic_net,
     flat,
     flat_spar_shear,
+    linear_deviation,
     quadratic,
     random_placements,
     real_wing,
@@ -37,7 +41,7 @@ def test_placed_without_error():
 
 def test_small_errors_move_the_spar_s_shear_by_as_much_and_the_wing_s_by_all_of_it():
     sigma = 0.01
-    placed = random_placements(WING, 0.005, 0.5, sigma, trials=2000, seed=3)
+    placed = random_placements(WING, 0.005, 0.5, sigma, trials=1000, seed=3)
     off = np.abs(placed.spar - placed.exact)
     assert (off <= np.abs(placed.tilt) + np.abs(placed.gamma) + 1e-12).all()
     spread, sheared = placed.spread()
@@ -56,13 +60,13 @@ def test_placements_are_seeded():
 
 def test_tilted_sheet_against_the_characteristics_of_a_tilted_fold():
     """A flat wing and a straight edge seen tilted are the skew spar: the same ψ, the same shear."""
-    from meshdrape.theory import WING_FED, characteristic_net, linear_deviation
-
-    placed = random_placements(flat(2.0), 0.02, 0.5, 0.1, trials=40, seed=1)
+    placed = random_placements(flat(2.0), 0.02, 0.5, 0.1, trials=16, seed=1)
     for tilt, gamma, spar in zip(placed.tilt, placed.gamma, placed.spar, strict=True):
         if tilt < 0:  # the edge rises in the sheet's frame like x = -tan(tilt) s
             net = characteristic_net(Fold(flat(2.0), linear_deviation(-np.tan(tilt), 2.0)), 0.02, 0.5, gamma)
-            assert net.max_shear(1).shear == pytest.approx(spar, abs=1e-9)
+            fed = net.region == RIBBON_FED
+            fed[0] = False  # turned by the kink at the corner
+            assert np.abs(net.shear[fed]).max() == pytest.approx(spar, abs=1e-9)
             assert net.max_shear(WING_FED).shear == pytest.approx(0, abs=1e-9)
 
 

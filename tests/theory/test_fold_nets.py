@@ -15,6 +15,7 @@ from meshdrape.theory import (
     RIBBON_FED,
     WING_FED,
     Fold,
+    Profile,
     characteristic_net,
     discrete_net,
     flat,
@@ -304,9 +305,33 @@ def test_refused():
         ((0.9, 1.0), "spacing=0.9"),
         ((0.1, 0.0), "height=0.0"),
         ((0.1, 1.0, 2.0), "gamma=2.0"),
+        ((0.1, 1.0, "best"), "gamma='best'"),
         ((0.1, 1.0, 0.0, 1.5), "row_offset=1.5"),
     ):
         with pytest.raises(DesignError, match=culprit):
             discrete_net(FIGURE_4, *parameters)
+    with pytest.raises(NetError, match=r"too large; raise the spacing"):
+        characteristic_net(FIGURE_4, 1e-4, 1.0)
     with pytest.raises(NetError, match=r"near y = .*lower the spacing"):
         discrete_net(Fold(flat(1.0), ripple_deviation(0.3, 0.1, 1.0)), 0.1, 0.5)
+
+
+@pytest.mark.parametrize("build", BOTH)
+def test_unit_and_origin_do_not_matter(build):
+    """Millimetres for metres, and both profiles lifted off 0 at y = 0."""
+    plain = build(real_fold("sin2_slope"), 0.1, 1.0, -0.01)
+    wing = real_wing(14000.0, metre=1000.0)
+    scaled = build(Fold(wing, wing + named_deviation("sin2_slope", 14000.0, c=0.1)), 100.0, 1000.0, -0.01)
+    assert np.nanmax(np.abs(scaled.shear - plain.shear)) < 1e-9
+    assert np.abs(scaled.node - 1000 * plain.node).max() < 1e-6
+
+    def lifted(profile, by):
+        return Profile(
+            profile.span, lambda y: profile.value(y) + by, profile.derivative, profile.second_derivative
+        )  # fmt: skip
+
+    fold = real_fold("sin2_slope")
+    moved = build(Fold(lifted(fold.wing, 0.7), lifted(fold.spar, -0.4)), 0.1, 1.0, -0.01)
+    assert np.array_equal(moved.region, plain.region)
+    assert np.nanmax(np.abs(moved.shear - plain.shear)) < 1e-9
+    assert np.abs(moved.node - plain.node - [-0.4, 0, 0.7]).max() < 1e-9
