@@ -45,7 +45,10 @@ def test_small_errors_move_the_spar_s_shear_by_as_much_and_the_wing_s_by_all_of_
     off = np.abs(placed.spar - placed.exact)
     assert (off <= np.abs(placed.tilt) + np.abs(placed.gamma) + 1e-12).all()
     spread, sheared = placed.spread()
-    assert spread == pytest.approx(np.sqrt(2) * sigma, rel=0.1)
+    # where the edge falls the steepest station shears by tilt - gamma more; where it rises wing-fed cells hold it up
+    falls = placed.tilt > 0
+    assert (placed.spar - placed.exact)[falls] == pytest.approx((placed.tilt - placed.gamma)[falls], abs=1e-12)
+    assert sigma < spread < np.sqrt(2) * sigma
     # half of all tilts let the edge fall; those of more than about half a spacing over the span bring rows up
     assert 0.3 < sheared < 0.5
     assert (placed.wing[placed.tilt <= 0] == 0).all()
