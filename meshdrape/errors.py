@@ -43,6 +43,10 @@ class NetError(MeshdrapeError):
     """A net that cannot be made or read: too large for the memory, not a meshdrape file."""
 
 
+class DesignError(MeshdrapeError):
+    """A wing and spar, or a question about them, that makes no sense: a table that does not increase, no such name."""
+
+
 class MissingLibraryError(MeshdrapeError):
     """A library of the system that a dependency needs and the machine does not have."""
 
