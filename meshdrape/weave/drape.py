@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
 from meshdrape.surface import Surface
+from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.fibre import FAMILY, Turn, Turns
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net
@@ -33,14 +35,17 @@ def drape(
     engine: str = "fast",
     extent: tuple[float, float, float, float] | None = None,
     *,
+    warp_turn: float | None = None,
+    weft_turn: float | None = None,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Net:
     """The fishnet of a fabric on a mould.
 
     The warp generator leaves the seed along `direction`, projected on the surface, the weft generator at the fabric's
-    initial angle counter-clockwise about the normal; both are straightest geodesics. Every other node lies at one
-    spacing, measured by exact polyhedral geodesic distance, from its two neighbours nearer to the seed.
+    initial angle counter-clockwise about the normal; both are straightest geodesics, unless told otherwise. Every
+    other node lies at one spacing, measured by exact polyhedral geodesic distance, from its two neighbours nearer to
+    the seed.
 
     Parameters
     ----------
@@ -55,6 +60,12 @@ def drape(
         "fast" agrees with to 1e-9 of the spacing.
     extent : (warp-, warp+, weft-, weft+), mm
         Cloth from the seed each way; default as far as the mould reaches.
+    warp_turn, weft_turn : float, rad
+        Turn of that generator where it first crosses a crease, each half at its own: counter-clockwise as seen from
+        the side the cloth lies on (right-handed about the mould's normal), from the straightest way over the crease.
+        Nodes keep one spacing along the bent fibre. Rows that do not start beyond the crease do not depend on it, to
+        the bit. A crease is an edge at which the normals of its two triangles differ by more than 20 degrees; between
+        two faces of a CAD file more than 2 degrees, and twice the angle tolerance, suffice. A rounded edge has none.
     threads : int
         Default the number of cores. The net does not depend on it.
     progress : callable
@@ -67,7 +78,8 @@ def drape(
     Raises
     ------
     StartError
-        If the seed lies farther than one spacing from the mould, or the direction is zero or along the normal.
+        If the seed lies farther than one spacing from the mould, the direction is zero or along the normal, or a
+        generator that is to turn never meets a crease or turns back over it.
     FabricError
         If the spacing is larger than the mould.
     NetError
@@ -109,7 +121,8 @@ def drape(
         point, _ = part.closest_point(seed)
     if direction is None:
         direction = default_direction(part, point.face)
-    laid = lay(part, fabric, point, direction, extent, threads, progress, settle_every=engine == "libigl")
+    turns = _turns(mould, part, part_face, warp_turn, weft_turn)
+    laid = lay(part, fabric, point, direction, extent, threads, progress, turns=turns, settle_every=engine == "libigl")
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
     trim(surface, fabric, lattice, start, threads)
@@ -128,6 +141,26 @@ def drape(
         settled_by_libigl=laid.settled,
         threads=threads,
     )
+
+
+def _turns(
+    mould: Mould,
+    part: Surface,
+    part_face: NDArray[np.int64],
+    warp_turn: float | None,
+    weft_turn: float | None,
+) -> Turns:
+    """Turns of both generators at the creases of the draped part."""
+    angles = (warp_turn, weft_turn)
+    for name, angle in zip(FAMILY, angles, strict=True):
+        if angle is not None and not abs(angle) < math.pi:
+            msg = f"{name}_turn is {angle} rad; it must lie between -pi and pi"
+            raise StartError(msg)
+    if warp_turn is None and weft_turn is None:
+        return None, None
+    crease = crease_edges(part, mould.triangle_face[part_face], mould.angle_tolerance)
+    warp, weft = (None if angle is None else Turn(float(angle), crease) for angle in angles)
+    return warp, weft
 
 
 def default_seed(surface: Surface) -> FloatArray:

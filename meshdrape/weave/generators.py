@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from meshdrape.errors import NetError
+from meshdrape.errors import NetError, StartError
 from meshdrape.kernels.emit import border_status
-from meshdrape.kernels.generator import trace
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.fibre import FAMILY, HalfFibre, Turns, straight_half
 from meshdrape.weave.start import SeedStar
 from meshdrape.weave.status import NodeStatus
 
@@ -45,10 +42,54 @@ def generator_counts(surface: Surface, fabric: Fabric, extent: Extent | None) ->
     return [int(min(length / step + 1e-9, MOST_NODES)) for length, step in zip(lengths, spacing, strict=True)]
 
 
+def start_fibres(
+    surface: Surface,
+    fabric: Fabric,
+    star: SeedStar,
+    counts: list[int],
+    memory: int,
+    turns: Turns = (None, None),
+) -> list[HalfFibre]:
+    """The four half-fibres +warp, +weft, -warp, -weft, as far as the surface and `counts` let them.
+
+    Parameters
+    ----------
+    memory : int
+        Bytes the lattice may take.
+    turns : (warp, weft)
+        Turns of each fibre at a crease, for both its halves.
+
+    Raises
+    ------
+    NetError
+        If a fibre alone does not fit.
+    StartError
+        If a fibre that is to turn never meets a crease, or turns back over it.
+    """
+    spacing = (fabric.warp_spacing, fabric.weft_spacing)
+    halves: list[HalfFibre] = []
+    met = [False, False]
+    for half in range(4):
+        family = half % 2
+        check_memory(counts[half] + 1, 1, fabric, memory)
+        fibre, turned = straight_half(surface, star, half, spacing[family], counts[half], turns[family])
+        halves.append(fibre)
+        met[family] |= turned
+    for name, turn, found in zip(FAMILY, turns, met, strict=True):
+        if turn is not None and not found:
+            msg = (
+                f"the {name} meets no crease to turn at; move the seed or the direction so that it crosses a sharp "
+                f"edge, or give the whole fibre as {name}_path"
+            )
+            raise StartError(msg)
+    return halves
+
+
 def lay_generators(
     surface: Surface,
     fabric: Fabric,
     star: SeedStar,
+    halves: list[HalfFibre],
     counts: list[int],
     memory: int,
     reach: Extent | None = None,
@@ -57,6 +98,8 @@ def lay_generators(
 
     Parameters
     ----------
+    halves : list of HalfFibre
+        +warp, +weft, -warp, -weft.
     memory : int
         Bytes the lattice may take.
     reach : (warp-, warp+, weft-, weft+), mm, optional
@@ -69,24 +112,7 @@ def lay_generators(
     """
     mesh = surface.unfolding
     spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
-    halves = []
-    for half in range(4):
-        n = counts[half]
-        check_memory(n + 1, 1, fabric, memory)
-        fibre: list[NDArray[Any]] = [np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3))]
-        fibre.append(np.zeros(n, dtype=np.bool_))
-        _, ended, _ = trace(
-            mesh,
-            star.face[half],
-            *star.xy[half],
-            *star.out[half],
-            star.far_edge[half],
-            spacing[half],
-            n,
-            *fibre,
-        )
-        halves.append([array[:ended] for array in fibre])
-    set_nodes = [len(fibre[0]) for fibre in halves]
+    set_nodes = [len(fibre) for fibre in halves]
     room = set_nodes
     if reach is not None:
         wanted = [int(np.ceil(reach[k] / step)) for k, step in zip((1, 3, 0, 2), spacing, strict=True)]
@@ -103,22 +129,24 @@ def lay_generators(
     lattice.status[i0, j0] = NodeStatus.PLACED
     arrival = np.zeros((4, max(shape), 2))
     through = np.zeros((4, max(shape)), dtype=np.bool_)
-    for half, (face, xy, out, into, passes) in enumerate(halves):
+    arc = np.zeros((4, max(shape)), dtype=np.bool_)
+    for half, fibre in enumerate(halves):
         si, sj = SENSE[half]
-        k = np.arange(1, len(face) + 1)
+        k = np.arange(1, len(fibre) + 1)
         i, j = i0 + si * k, j0 + sj * k
-        lattice.face[i, j] = face
-        lattice.xy[i, j] = xy
-        side = np.empty(len(face), dtype=np.uint8)
-        border_status(mesh, face, xy, border_slack(fabric), side)
+        lattice.face[i, j] = fibre.face
+        lattice.xy[i, j] = fibre.xy
+        side = np.empty(len(fibre), dtype=np.uint8)
+        border_status(mesh, fibre.face, fibre.xy, border_slack(fabric), side)
         lattice.status[i, j] = side
-        arrival[half, : len(face)] = into
-        through[half, : len(face)] = passes
+        arrival[half, : len(fibre)] = fibre.into
+        through[half, : len(fibre)] = fibre.through
+        arc[half, : len(fibre)] = fibre.arc
         # the edge that leaves each node but the last, kept at its lower index
         if si:
-            lattice.warp_out[i[:-1] - (si < 0), j0] = out[:-1]
+            lattice.warp_out[i[:-1] - (si < 0), j0] = fibre.out[:-1]
         else:
-            lattice.weft_out[i0, j[:-1] - (sj < 0)] = out[:-1]
+            lattice.weft_out[i0, j[:-1] - (sj < 0)] = fibre.out[:-1]
     start = Start(
         origin=np.array([i0, j0]),
         face=star.face,
@@ -127,6 +155,7 @@ def lay_generators(
         sector=star.sector,
         arrival=arrival,
         through=through,
+        arc=arc,
         bent_key=np.empty(0, dtype=np.int64),
         bent_ends=np.empty((0, 4)),
     )

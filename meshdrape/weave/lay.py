@@ -13,6 +13,7 @@ from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.fibre import Turns
 from meshdrape.weave.generators import (
     MOST_NODES,
     Extent,
@@ -21,6 +22,7 @@ from meshdrape.weave.generators import (
     free_memory,
     generator_counts,
     lay_generators,
+    start_fibres,
 )
 from meshdrape.weave.net import run_kernel
 from meshdrape.weave.quadrants import fill
@@ -30,6 +32,9 @@ from meshdrape.weave.status import NodeStatus
 # Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
 # find a place on it; two more carry the hem.
 COLLAR_DEPTH = 4.0
+# A fibre turned at a crease may leave the mould sideways while its rows still lie on it: the collar is then as deep as
+# this share of the longest way the fibre may run, whatever its turn: rows it does not feed keep their every bit.
+STRAY = 0.2
 # Cells of cloth kept past the last that touches the mould.
 HEM = 2
 # A net of more nodes than this is first laid coarsely, with about that many nodes, to learn how far it reaches:
@@ -56,6 +61,7 @@ def lay(
     threads: int,
     progress: Callable[[int], None] | None = None,
     *,
+    turns: Turns = (None, None),
     settle_every: bool = False,
 ) -> Laid:
     """Lay a sheet from a seed point of a connected surface, without an end where it meets itself, untrimmed.
@@ -67,6 +73,8 @@ def lay(
         The seed, on `part`.
     direction : (3,)
         Of the warp.
+    turns : (warp, weft)
+        Turns of the start fibres at a crease.
     settle_every : bool
         Have libigl place every node.
     extent : (warp-, warp+, weft-, weft+), mm, optional
@@ -75,9 +83,10 @@ def lay(
     ------
     NetError
         If the net would not fit in the memory.
+    StartError
+        If a start fibre cannot run as asked.
     """
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
-    surface = _with_collar(part, COLLAR_DEPTH * longest)
+    surface = _with_collar(part, _collar_depth(part, fabric, extent, turns))
     star = seed_star(surface, point, direction, fabric.initial_angle)
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
@@ -88,8 +97,9 @@ def lay(
         check_memory(int(cells), 1, fabric, memory)
         scale = float(np.sqrt(cells / SCOUT_NODES))
         coarse = Fabric((scale * fabric.warp_spacing, scale * fabric.weft_spacing), fabric.initial_angle)
-        reach = _reach(lay(part, coarse, point, direction, extent, threads), coarse)
-    lattice, start = lay_generators(surface, fabric, star, counts, memory, reach)
+        reach = _reach(lay(part, coarse, point, direction, extent, threads, turns=turns), coarse)
+    halves = start_fibres(surface, fabric, star, counts, memory, turns)
+    lattice, start = lay_generators(surface, fabric, star, halves, counts, memory, reach)
     settled = 0
     while True:
         start, more = fill(surface, fabric, lattice, start, threads, progress, settle_every=settle_every)
@@ -98,6 +108,16 @@ def lay(
         if not any(grow):
             return Laid(surface, lattice, start, settled)
         lattice, start = _grown(lattice, start, grow, fabric, memory)
+
+
+def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, turns: Turns) -> float:
+    """Depth of the collar, mm."""
+    depth = COLLAR_DEPTH * max(fabric.warp_spacing, fabric.weft_spacing)
+    for turn, sides in zip(turns, ((0, 1), (2, 3)), strict=True):
+        if turn is not None:
+            longest = part.diagonal if extent is None else min(part.diagonal, max(extent[k] for k in sides))
+            depth = max(depth, STRAY * longest)
+    return depth
 
 
 def _with_collar(part: Surface, depth: float) -> Surface:
