@@ -72,6 +72,8 @@ class Start(NamedTuple):
     """(4, 2) unit direction in that frame."""
     sector: FloatArray
     """(4,) angle from each half-fibre to the next, counter-clockwise, rad."""
+    tangent: FloatArray
+    """(2, 2) unit directions of warp and weft at the seed, in the frame of the face that holds it."""
     arrival: FloatArray
     """(4, n, 2) direction in which each half-fibre reaches its first, second ... node, in that node's frame."""
     through: NDArray[np.bool_]

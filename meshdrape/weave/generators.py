@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshdrape.errors import NetError, StartError
 from meshdrape.kernels.emit import border_status
 from meshdrape.kernels.tables import Lattice, Start
-from meshdrape.surface import Surface
+from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.fibre import FAMILY, HalfFibre, Turns, straight_half
-from meshdrape.weave.start import SeedStar
+from meshdrape.weave.fibre import FAMILY, STRAIGHT, Courses, HalfFibre, straight_half, track_half
+from meshdrape.weave.rays import Ray, Rays
+from meshdrape.weave.start import SeedStar, seed_star, star_of_rays
 from meshdrape.weave.status import NodeStatus
 
 # Bytes a lattice takes per entry: face, place, two directions, status.
@@ -45,19 +49,23 @@ def generator_counts(surface: Surface, fabric: Fabric, extent: Extent | None) ->
 def start_fibres(
     surface: Surface,
     fabric: Fabric,
-    star: SeedStar,
+    point: SurfacePoint,
+    direction: ArrayLike,
     counts: list[int],
     memory: int,
-    turns: Turns = (None, None),
-) -> list[HalfFibre]:
-    """The four half-fibres +warp, +weft, -warp, -weft, as far as the surface and `counts` let them.
+    courses: Courses = STRAIGHT,
+) -> tuple[SeedStar, list[HalfFibre]]:
+    """The star of the seed, and the half-fibres +warp, +weft, -warp, -weft as far as surface and `counts` let them.
 
     Parameters
     ----------
+    point : SurfacePoint
+        The seed; on the tracks, if there are any.
+    direction : (3,)
+        Of the warp, where neither fibre follows a track.
     memory : int
         Bytes the lattice may take.
-    turns : (warp, weft)
-        Turns of each fibre at a crease, for both its halves.
+    courses : (warp, weft)
 
     Raises
     ------
@@ -66,23 +74,70 @@ def start_fibres(
     StartError
         If a fibre that is to turn never meets a crease, or turns back over it.
     """
-    spacing = (fabric.warp_spacing, fabric.weft_spacing)
-    halves: list[HalfFibre] = []
-    met = [False, False]
-    for half in range(4):
-        family = half % 2
-        check_memory(counts[half] + 1, 1, fabric, memory)
-        fibre, turned = straight_half(surface, star, half, spacing[family], counts[half], turns[family])
-        halves.append(fibre)
-        met[family] |= turned
-    for name, turn, found in zip(FAMILY, turns, met, strict=True):
-        if turn is not None and not found:
+    spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
+    for count in counts:
+        check_memory(count + 1, 1, fabric, memory)
+    halves: dict[int, HalfFibre] = {}
+    for family, course in enumerate(courses):
+        if course.track is not None:
+            for half, track in ((family, course.track), (family + 2, course.track.reversed())):
+                halves[half] = track_half(surface, point, track, spacing[half], counts[half])
+    if halves:
+        rays = Rays(surface, point)
+        leave, tangents = _leaving(rays, halves, fabric.initial_angle)
+        star = star_of_rays(surface, rays, leave, tangents)
+    else:
+        star = seed_star(surface, point, direction, fabric.initial_angle)
+    for family, course in enumerate(courses):
+        if course.track is not None:
+            continue
+        met = False
+        for half in (family, family + 2):
+            ray = star.ray(half)
+            halves[half], turned = straight_half(surface, ray, half, spacing[half], counts[half], course.turn)
+            met |= turned
+        if course.turn is not None and not met:
+            name = FAMILY[family]
             msg = (
                 f"the {name} meets no crease to turn at; move the seed or the direction so that it crosses a sharp "
                 f"edge, or give the whole fibre as {name}_path"
             )
             raise StartError(msg)
-    return halves
+    fibres = [halves[half] for half in range(4)]
+    if not all(course.track for course in courses) and any(fibre.leave for fibre in fibres):
+        # a turn on the first edge: the star is that of the edges
+        rays = Rays(surface, point)
+        frame = [rays.angle(star.face[0], *tangent) for tangent in star.tangent]
+        leave = [fibre.leave or star.ray(half) for half, fibre in enumerate(fibres)]
+        star = star_of_rays(surface, rays, leave, (frame[0], frame[1]))
+    return star, fibres
+
+
+def _leaving(rays: Rays, halves: dict[int, HalfFibre], initial_angle: float) -> tuple[list[Ray], tuple[float, float]]:
+    """Directions of the four half-fibres where at least one fibre follows a track, and the angles of both fibres.
+
+    A fibre's own direction halves the angle its two sides make; a straight fibre crosses it at the initial angle.
+    """
+    total = rays.total
+    part = initial_angle / (2 * math.pi) * total
+    angle: dict[int, float] = {}
+    tangent: dict[int, float] = {}
+    for half, fibre in halves.items():
+        assert fibre.leave is not None
+        angle[half] = rays.angle(fibre.leave.face, fibre.leave.dx, fibre.leave.dy)
+    for family in (0, 1):
+        if family in halves:
+            left = (angle[family + 2] - angle[family]) % total
+            tangent[family] = angle[family] - 0.5 * (0.5 * total - left)
+    if 0 not in halves:
+        tangent[0] = tangent[1] - part
+    if 1 not in halves:
+        tangent[1] = tangent[0] + part
+    leave: list[Ray] = []
+    for half in range(4):
+        drawn = halves[half].leave if half in halves else None
+        leave.append(drawn or rays.ray(tangent[half % 2] + (0.5 * total if half > 1 else 0.0)))
+    return leave, (tangent[0], tangent[1])
 
 
 def lay_generators(
@@ -153,6 +208,7 @@ def lay_generators(
         xy=star.xy,
         out=star.out,
         sector=star.sector,
+        tangent=star.tangent,
         arrival=arrival,
         through=through,
         arc=arc,

@@ -13,7 +13,7 @@ from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.fibre import Turns
+from meshdrape.weave.fibre import STRAIGHT, Courses
 from meshdrape.weave.generators import (
     MOST_NODES,
     Extent,
@@ -26,7 +26,6 @@ from meshdrape.weave.generators import (
 )
 from meshdrape.weave.net import run_kernel
 from meshdrape.weave.quadrants import fill
-from meshdrape.weave.start import seed_star
 from meshdrape.weave.status import NodeStatus
 
 # Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
@@ -61,7 +60,7 @@ def lay(
     threads: int,
     progress: Callable[[int], None] | None = None,
     *,
-    turns: Turns = (None, None),
+    courses: Courses = STRAIGHT,
     settle_every: bool = False,
 ) -> Laid:
     """Lay a sheet from a seed point of a connected surface, without an end where it meets itself, untrimmed.
@@ -73,8 +72,8 @@ def lay(
         The seed, on `part`.
     direction : (3,)
         Of the warp.
-    turns : (warp, weft)
-        Turns of the start fibres at a crease.
+    courses : (warp, weft)
+        How the start fibres run.
     settle_every : bool
         Have libigl place every node.
     extent : (warp-, warp+, weft-, weft+), mm, optional
@@ -86,8 +85,7 @@ def lay(
     StartError
         If a start fibre cannot run as asked.
     """
-    surface = _with_collar(part, _collar_depth(part, fabric, extent, turns))
-    star = seed_star(surface, point, direction, fabric.initial_angle)
+    surface = _with_collar(part, _collar_depth(part, fabric, extent, courses))
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
     bounded = part.area if extent is None else min(part.area, (extent[0] + extent[1]) * (extent[2] + extent[3]))
@@ -97,8 +95,8 @@ def lay(
         check_memory(int(cells), 1, fabric, memory)
         scale = float(np.sqrt(cells / SCOUT_NODES))
         coarse = Fabric((scale * fabric.warp_spacing, scale * fabric.weft_spacing), fabric.initial_angle)
-        reach = _reach(lay(part, coarse, point, direction, extent, threads, turns=turns), coarse)
-    halves = start_fibres(surface, fabric, star, counts, memory, turns)
+        reach = _reach(lay(part, coarse, point, direction, extent, threads, courses=courses), coarse)
+    star, halves = start_fibres(surface, fabric, point, direction, counts, memory, courses)
     lattice, start = lay_generators(surface, fabric, star, halves, counts, memory, reach)
     settled = 0
     while True:
@@ -110,11 +108,11 @@ def lay(
         lattice, start = _grown(lattice, start, grow, fabric, memory)
 
 
-def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, turns: Turns) -> float:
+def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:
     """Depth of the collar, mm."""
     depth = COLLAR_DEPTH * max(fabric.warp_spacing, fabric.weft_spacing)
-    for turn, sides in zip(turns, ((0, 1), (2, 3)), strict=True):
-        if turn is not None:
+    for course, sides in zip(courses, ((0, 1), (2, 3)), strict=True):
+        if course.turn is not None:
             longest = part.diagonal if extent is None else min(part.diagonal, max(extent[k] for k in sides))
             depth = max(depth, STRAY * longest)
     return depth
