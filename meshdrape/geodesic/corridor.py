@@ -11,8 +11,8 @@ from meshdrape.surface import Surface, SurfacePoint
 
 # Barycentric distance below which a point lies on an edge or a vertex: round-off.
 SNAP = 1e-9
-# A section this much longer than the chord may not be the short way: another corridor is tried beside it.
-DETOUR = 1.1
+# A section this much longer than the chord may not be the short way; over a right-angled crease it is 1.4 times that.
+DETOUR = 1.5
 
 
 def faces_about(surface: Surface, point: SurfacePoint) -> list[int]:

@@ -27,6 +27,8 @@ from meshdrape.surface import Surface, SurfacePoint
 ON_EDGE = 1e-10
 # The other way round a vertex is shorter if it is below half a turn by more than this, rad: round-off.
 STRAIGHT = 1e-9
+# Pieces shorter than this share of the longest are round-off where a path touches a triangle.
+SPECK = 1e-9
 # Rounds of leading the corridor about vertices; each shortens the path, so only a broken mesh needs as many.
 MAX_ROUNDS = 10_000
 
@@ -37,6 +39,12 @@ class Piece(NamedTuple):
     face: int
     tail: complex
     head: complex
+
+    @property
+    def direction(self) -> complex:
+        """Unit direction; 0 of a piece of no length."""
+        along = self.head - self.tail
+        return along / (abs(along) or 1.0)
 
 
 class _Gate(NamedTuple):
@@ -194,7 +202,7 @@ def _funnel(start: complex, end: complex, gates: list[_Gate]) -> list[_Bend]:
     while n < len(doors):
         door = doors[n]
         if _side(right.place - apex.place, door.right - apex.place) >= 0:
-            if apex.place == right.place or _side(left.place - apex.place, door.right - apex.place) < 0:
+            if apex.place in (left.place, right.place) or _side(left.place - apex.place, door.right - apex.place) < 0:
                 right = _Bend(door.right, n, door.right_vertex)
             else:
                 bends.append(left)
@@ -202,7 +210,7 @@ def _funnel(start: complex, end: complex, gates: list[_Gate]) -> list[_Bend]:
                 apex = right = left
                 continue
         if _side(left.place - apex.place, door.left - apex.place) <= 0:
-            if apex.place == left.place or _side(right.place - apex.place, door.left - apex.place) > 0:
+            if apex.place in (left.place, right.place) or _side(right.place - apex.place, door.left - apex.place) > 0:
                 left = _Bend(door.left, n, door.left_vertex)
             else:
                 bends.append(right)
@@ -284,13 +292,10 @@ def _through(gate: _Gate, before: _Bend, after: _Bend) -> complex:
     return gate.right + min(max(at, 0.0), 1.0) * across
 
 
-def directions(pieces: list[Piece]) -> tuple[complex, complex]:
-    """Unit directions in which a path leaves its start and reaches its end, in the frames of those pieces."""
+def without_specks(pieces: list[Piece]) -> list[Piece]:
+    """The pieces long enough to have a direction."""
     longest = max(abs(piece.head - piece.tail) for piece in pieces)
-    # a piece of no length to speak of has no direction
-    kept = [piece for piece in pieces if abs(piece.head - piece.tail) > 1e-9 * longest] or pieces
-    first, last = (kept[k].head - kept[k].tail for k in (0, -1))
-    return first / (abs(first) or 1.0), last / (abs(last) or 1.0)
+    return [piece for piece in pieces if abs(piece.head - piece.tail) > SPECK * longest] or pieces
 
 
 def place_of(surface: Surface, face: int, place: complex) -> NDArray[np.float64]:

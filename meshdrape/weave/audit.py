@@ -39,6 +39,9 @@ class Audit:
         straightest path need not be the shortest there, so they are kept apart.
     max_through_vertex : float
         Largest relative error among those.
+    n_arcs : int
+        Edges in the sample on which a start fibre bends as prescribed: one spacing along the fibre, less from end to
+        end. There is nothing to measure.
     n_skipped : int
         Edges with an end too near to a triangle's side to be measured.
     n_population : int
@@ -52,6 +55,7 @@ class Audit:
     n_second_routes: int
     n_through_vertex: int
     max_through_vertex: float
+    n_arcs: int
     n_skipped: int
     n_population: int
     seconds: float
@@ -75,9 +79,12 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
     counts = (np.count_nonzero(placed[:-1] & placed[1:]), np.count_nonzero(placed[:, :-1] & placed[:, 1:]))
     population = int(sum(counts))
     worst, worst_edge = float("nan"), (0, 0, 0)
-    measured = second = through = skipped = 0
+    measured = second = through = arcs = skipped = 0
     worst_through = 0.0
     for family, i, j in _sample(placed, population, edges, np.random.default_rng(seed)):
+        if _on_edge(net, net.start.arc, family, i, j):
+            arcs += 1
+            continue
         if measured + through and time.perf_counter() - begun > seconds:
             break
         spacing = net.fabric.warp_spacing if family == WARP else net.fabric.weft_spacing
@@ -87,7 +94,7 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
             skipped += 1
             continue
         error = abs(distance - spacing) / spacing
-        if _runs_through(net, family, i, j) or (
+        if _on_edge(net, net.start.through, family, i, j) or (
             distance < spacing * (1 - SECOND_ROUTE) and _on_generator(net, family, i, j)
         ):
             through += 1
@@ -104,6 +111,7 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
         n_second_routes=int(second),
         n_through_vertex=through,
         max_through_vertex=worst_through,
+        n_arcs=arcs,
         n_skipped=skipped,
         n_population=population,
         seconds=time.perf_counter() - begun,
@@ -140,8 +148,8 @@ def _on_generator(net: Net, family: int, i: int, j: int) -> bool:
     return (family == WARP and j == j0) or (family == WEFT and i == i0)
 
 
-def _runs_through(net: Net, family: int, i: int, j: int) -> bool:
-    """Whether this is a generator edge with a vertex on it."""
+def _on_edge(net: Net, marked: NDArray[np.bool_], family: int, i: int, j: int) -> bool:
+    """Whether this is a generator edge, and marked in an array (4, n) by half-fibre and number."""
     i0, j0 = net.seed_index
     if family == WARP and j == j0:
         half, order = (0, i - i0) if i >= i0 else (2, i0 - i - 1)
@@ -149,4 +157,4 @@ def _runs_through(net: Net, family: int, i: int, j: int) -> bool:
         half, order = (1, j - j0) if j >= j0 else (3, j0 - j - 1)
     else:
         return False
-    return bool(net.start.through[half, order])
+    return bool(marked[half, order])

@@ -12,7 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels import locate
+from meshdrape.kernels.walk import turn_into
 from meshdrape.weave.measures import Measures
+from meshdrape.weave.net import Net
+from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
 
@@ -91,7 +94,39 @@ def balance(measures: Measures) -> Balance:
         gaps = ~whole[rows, columns][::si, ::sj]
         quadrant[gaps.cumsum(axis=0).cumsum(axis=1) > 0] = np.nan
         predicted[rows, columns] = si * sj * quadrant[::si, ::sj]
+    if net.start_fibres:
+        warp, weft = (_turned(net, family) for family in (0, 1))
+        predicted += warp[:, None] - weft[None, :]
+        if all(path is not None for path in net.start_fibres.paths):
+            (px, py), (qx, qy) = net.start.tangent
+            predicted += net.fabric.initial_angle - np.arctan2(px * qy - py * qx, px * qx + py * qy)
     return Balance(predicted, inside, measures)
+
+
+def _turned(net: Net, family: int) -> FloatArray:
+    """Turn of a generator from the seed to each of its edges, counter-clockwise, (n_warp - 1,) or (n_weft - 1,) rad."""
+    start, lattice, mesh = net.start, net.lattice, net.surface.unfolding
+    i0, j0 = net.seed_index
+    out = (lattice.warp_out[:, j0], lattice.weft_out[i0])[family]
+    status = (lattice.status[:, j0], lattice.status[i0])[family]
+    at = net.seed_index[family]
+    turned = np.full(len(status) - 1, np.nan)
+    for half, sense in ((family, 1), (family + 2, -1)):
+        leave = turn_into(mesh.plane, mesh.neighbour, mesh.frame, start.face[half], *start.out[half], start.face[0])
+        total = _angle(sense * start.tangent[family], np.array(leave))
+        for k in range(len(status) - 1 - at if sense > 0 else at):
+            edge = at + k if sense > 0 else at - k - 1
+            if status[at + sense * (k + 1)] > NodeStatus.OFF_MOULD:
+                break
+            if k:
+                total += _angle(start.arrival[half, k - 1], out[edge])
+            turned[edge] = total
+    return turned
+
+
+def _angle(a: FloatArray, b: FloatArray) -> float:
+    """From one plane direction to another, counter-clockwise, rad."""
+    return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]))
 
 
 def _vertex_cells(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.errors import StartError
-from meshdrape.geodesic.shortest import directions, shortest_path
+from meshdrape.geodesic.shortest import shortest_path, without_specks
 from meshdrape.kernels.generator import NOT_TURNED, TURNED_BACK, trace
 from meshdrape.kernels.walk import turn_into
 from meshdrape.surface import Surface, SurfacePoint
@@ -220,16 +220,18 @@ def _by_chords(surface: Surface, fibre: HalfFibre, seed: Ray) -> HalfFibre:
     for n in bent.tolist():
         tail = (seed.face, seed.x, seed.y) if n == 0 else (int(fibre.face[n - 1]), *fibre.xy[n - 1])
         head = (int(fibre.face[n]), *fibre.xy[n])
-        chord = shortest_path(surface, SurfacePoint.from_frame(surface, *tail), SurfacePoint.from_frame(surface, *head))
-        out, into = directions(chord)
+        ends = [SurfacePoint.from_frame(surface, *place) for place in (tail, head)]
+        chord = without_specks(shortest_path(surface, ends[0], ends[1]))
         first, last = chord[0], chord[-1]
         if n == 0:
-            leave = Ray(first.face, *_pair(first.tail), *_pair(out), -1)
+            leave = Ray(first.face, *_pair(first.tail), *_pair(first.direction), -1)
         else:
             fibre.out[n - 1] = turn_into(
-                mesh.plane, mesh.neighbour, mesh.frame, first.face, *_pair(out), fibre.face[n - 1]
+                mesh.plane, mesh.neighbour, mesh.frame, first.face, *_pair(first.direction), fibre.face[n - 1]
             )
-        fibre.into[n] = turn_into(mesh.plane, mesh.neighbour, mesh.frame, last.face, *_pair(into), fibre.face[n])
+        fibre.into[n] = turn_into(
+            mesh.plane, mesh.neighbour, mesh.frame, last.face, *_pair(last.direction), fibre.face[n]
+        )
     return replace(fibre, leave=leave)
 
 
