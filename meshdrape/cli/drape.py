@@ -76,7 +76,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     net_path = Path(options.output)
     check_target(net_path)
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
-    paths = [None if file is None else read_path(file) for file in (options.warp_path, options.weft_path)]
+    warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()
     with Progress(options.quiet) as progress:
         progress.stage("reading the mould")
@@ -101,8 +101,8 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             extent=options.extent,
             warp_turn=options.warp_turn_deg,
             weft_turn=options.weft_turn_deg,
-            warp_path=paths[0],
-            weft_path=paths[1],
+            warp_path=warp_path,
+            weft_path=weft_path,
             threads=options.threads,
             progress=progress.step,
         )
