@@ -22,6 +22,8 @@ FloatArray = NDArray[np.float64]
 FAMILY = ("warp", "weft")
 # Nodes nearer than this share of the spacing to a joint of a path lie on it: round-off.
 AT_JOINT = 1e-9
+# A path goes straight on along its last piece longer than this share of the spacing.
+LAST_PIECE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,8 +163,10 @@ def track_half(surface: Surface, point: SurfacePoint, track: Track, spacing: flo
     xy = path.tail[piece] + (length - path.knot[piece]) * path.direction[piece]
     out = path.direction[piece]
     arc = np.array([path.bends_between(a + joint, b - joint) for a, b in pairwise(length)], dtype=np.bool_)
-    end = Ray(int(path.face[-1]), *_pair(path.head[-1]), *_pair(path.direction[-1]), -1)
-    beyond, _, _ = _traced(surface, end, path.length - float(length[-1]), spacing, count - on)
+    # from the tail of the last piece, which has length enough to hold a direction
+    last = int(np.flatnonzero(np.diff(path.knot) > LAST_PIECE * spacing)[-1])
+    end = Ray(int(path.face[last]), *_pair(path.tail[last]), *_pair(path.direction[last]), -1)
+    beyond, _, _ = _traced(surface, end, float(path.knot[last] - length[-1]), spacing, count - on)
     if len(beyond):
         beyond.arc[0] = path.bends_between(float(length[-1]) + joint, path.length - joint)
     fibre = HalfFibre(
