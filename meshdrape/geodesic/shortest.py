@@ -93,7 +93,7 @@ def shortest_path(surface: Surface, a: SurfacePoint, b: SurfacePoint, corridor: 
         raise StartError(msg)
     start, end = _in_face(surface, a, faces[0]), _in_face(surface, b, faces[-1])
     for _ in range(MAX_ROUNDS):
-        faces, start, end = _trimmed(surface, faces, start, end)
+        faces, start, end = _trimmed(surface, _without_returns(faces), start, end)
         gates, to_plane = _unfolded(surface, faces)
         finish = _into_plane(to_plane[-1], end)
         bends = _funnel(start, finish, gates)
@@ -142,6 +142,17 @@ def _edge_between(surface: Surface, face: int, other: int) -> int:
 def _on_edge(surface: Surface, face: int, edge: int, place: complex) -> bool:
     nx, ny, offset = surface.unfolding.line[face, 3 * edge : 3 * edge + 3].tolist()
     return bool(nx * place.real + ny * place.imag - offset <= ON_EDGE * float(surface.face_diameter[face]))
+
+
+def _without_returns(faces: list[int]) -> list[int]:
+    """The corridor without dead ends, triangles it enters and leaves by one side."""
+    kept: list[int] = []
+    for face in faces:
+        if len(kept) > 1 and kept[-2] == face:
+            kept.pop()
+        else:
+            kept.append(face)
+    return kept
 
 
 def _trimmed(surface: Surface, faces: list[int], start: complex, end: complex) -> tuple[list[int], complex, complex]:
