@@ -1,5 +1,7 @@
 """Locally shortest paths against libigl's distances, and as strings that nothing shortens."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from moulds import Mesh, bumpy, cube, cube_corner, grid, hypar, icosphere, plate, sliver_plate, step_corner, tube
@@ -69,7 +71,7 @@ def test_no_bend_can_be_pulled_straight(name):
     bent = 0
     for _ in range(60):
         pieces = shortest_path(surface, random_point(surface, rng), random_point(surface, rng))
-        for before, after in zip(pieces, pieces[1:], strict=False):
+        for before, after in pairwise(pieces):
             place = place_of(surface, after.face, after.tail)
             vertex = np.flatnonzero(np.linalg.norm(surface.vertices - place, axis=1) < 1e-9 * surface.diagonal)
             if len(vertex):
@@ -106,7 +108,7 @@ def test_on_a_plane_it_is_the_straight_line_whatever_the_corridor():
     over = [surface.closest_point(p)[0] for p in ([-91, 95, 0], [93, 96, 0])]
     stops = [a, *over, b]
     detour = []
-    for p, q in zip(stops, stops[1:], strict=False):
+    for p, q in pairwise(stops):
         detour += corridor_between(surface, p, q)[1 if detour else 0 :]
     straight = float(np.linalg.norm(a.position(surface) - b.position(surface)))
     assert path_length(shortest_path(surface, a, b, detour)) == pytest.approx(straight, rel=1e-12)
@@ -120,7 +122,9 @@ def test_it_bends_at_the_border_of_a_hollow_outline():
     centre = square.vertices[square.triangles].mean(axis=1)
     surface = Surface.from_arrays(*square.kept((centre[:, 0] < 1) | (centre[:, 1] < 1)))
     a, b = (surface.closest_point(p)[0] for p in ([0.7, 1.9, 0], [1.9, 0.8, 0]))
-    assert path_length(shortest_path(surface, a, b)) == pytest.approx(np.hypot(0.3, 0.9) + np.hypot(0.9, 0.2), rel=1e-12)
+    assert path_length(shortest_path(surface, a, b)) == pytest.approx(
+        np.hypot(0.3, 0.9) + np.hypot(0.9, 0.2), rel=1e-12
+    )
 
 
 def test_a_point_and_itself():
@@ -131,7 +135,7 @@ def test_a_point_and_itself():
 
 def test_separate_parts_are_told():
     one = plate()
-    two = one.joined(Mesh(one.vertices + [0, 0, 50.0], one.triangles))
+    two = one.joined(Mesh(one.vertices + np.array([0, 0, 50.0]), one.triangles))
     surface = Surface.from_arrays(*two)
     a, b = SurfacePoint(0, np.full(3, 1 / 3)), SurfacePoint(len(one.triangles), np.full(3, 1 / 3))
     with pytest.raises(StartError, match="separate parts"):
