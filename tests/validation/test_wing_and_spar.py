@@ -238,7 +238,11 @@ def test_flat_wing_skew_spar_and_a_left_ribbon_straight_down(rows_on_the_edge):
     from_wing = on_spar & (first_i >= 0) & (first_j < 29)
     assert from_ribbon.sum() > 200
     assert from_wing.sum() > 30
-    assert np.abs(np.abs(cells[from_ribbon]) + SKEW_PSI).max() < 1e-6
+    # an edge bent in its middle lacks 1 - cos(psi / 2) of a spacing: the columns beside the ribbon shear by that besides
+    beside = ((first_i == 0) | (first_i == -1)) & (not rows_on_the_edge)
+    off = np.abs(np.abs(cells) + SKEW_PSI)
+    assert off[from_ribbon & ~beside].max() < 1e-6
+    assert off[from_ribbon].max() < np.degrees(1 - np.cos(np.arctan(SKEW) / 2)) + 1e-3
     assert np.abs(cells[from_wing]).max() < 1e-6
 
 
