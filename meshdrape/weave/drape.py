@@ -136,7 +136,8 @@ def drape(
     turns = turns_on(part, mould.triangle_face[part_face], mould.angle_tolerance, given.turns)
     tracks: tuple[Track | None, Track | None] = (None, None)
     if drawn is not None:
-        tracks, point = tracks_on(part, fabric, given.paths, seed if asked else None, direction)
+        called = "the mould" if part is whole else "the part of the mould it is drawn on"
+        tracks, point = tracks_on(part, fabric, given.paths, seed if asked else None, direction, called)
         moved = float(np.linalg.norm(point.position(part) - seed))
         if asked and moved > max(distance, 1e-6 * longest):
             notes.append(f"the seed was moved {moved:.4g} mm onto the drawn fibre")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,46 +109,42 @@ class SurfacePath:
         return float(self.knot[n] + t[n] * (self.knot[n + 1] - self.knot[n])), float(distance[n])
 
 
-def draw(surface: Surface, points: FloatArray, spacing: float, name: str) -> SurfacePath:
+def draw(surface: Surface, points: FloatArray, spacing: float, name: str, called: str = "the mould") -> SurfacePath:
     """The curve through the given points: each projected on the surface, joined in their order by geodesics.
 
     Parameters
     ----------
     surface : Surface
+        Connected.
     points : (n, 3) float, mm
     spacing : float
         Farthest a point may lie from the surface, mm.
-    name : str
-        What errors call the curve.
+    name, called : str
+        What errors call the curve and the surface.
 
     Raises
     ------
     StartError
-        If no two points are apart, one is too far off, or two lie on separate parts.
+        If no two points are apart, or one is too far off.
     """
     on: list[SurfacePoint] = []
-    kept: list[int] = []
     for n, position in enumerate(points):
         point, distance = surface.closest_point(position)
         if distance > spacing:
             msg = (
-                f"{name}: point {n + 1} at ({', '.join(f'{v:g}' for v in position)}) lies {distance:.6g} mm from the "
-                f"mould, farther than one spacing ({spacing:g} mm); draw it on the mould"
+                f"{name}: point {n + 1} at ({', '.join(f'{v:g}' for v in position)}) lies {distance:.6g} mm from "
+                f"{called}, farther than one spacing ({spacing:g} mm); draw it on {called}"
             )
             raise StartError(msg)
         apart = not on or float(np.linalg.norm(point.position(surface) - on[-1].position(surface)))
         if apart > SAME_POINT * spacing:
             on.append(point)
-            kept.append(n + 1)
     if len(on) < 2:
         msg = f"{name} has {len(points)} points and no two of them apart on the mould; give at least two"
         raise StartError(msg)
     pieces: list[Piece] = []
     bend: list[bool] = []
-    for a, b, first, last in zip(on, on[1:], kept, kept[1:], strict=False):
-        if surface.face_component[a.face] != surface.face_component[b.face]:
-            msg = f"{name}: points {first} and {last} lie on separate parts of the mould; draw the fibre on one"
-            raise StartError(msg)
+    for a, b in pairwise(on):
         joined = [piece for piece in shortest_path(surface, a, b) if abs(piece.head - piece.tail) > NOTHING * spacing]
         pieces += joined
         bend += [k == 0 or _touches_vertex(surface, piece) for k, piece in enumerate(joined)]

@@ -96,9 +96,13 @@ def _points(path: ArrayLike, name: str) -> FloatArray:
 
 
 def tracks_on(
-    part: Surface, fabric: Fabric, paths: tuple[FloatArray | None, FloatArray | None], seed: FloatArray | None,
+    part: Surface,
+    fabric: Fabric,
+    paths: tuple[FloatArray | None, FloatArray | None],
+    seed: FloatArray | None,
     direction: ArrayLike | None,
-) -> tuple[tuple[Track | None, Track | None], SurfacePoint]:  # fmt: skip
+    called: str = "the mould",
+) -> tuple[tuple[Track | None, Track | None], SurfacePoint]:
     """The drawn fibres on the draped part, run the way the net counts, and the seed on them.
 
     Parameters
@@ -111,6 +115,8 @@ def tracks_on(
         crossing, or the path's middle.
     direction : (3,), optional
         The warp runs along it rather than against it; default: as the path is drawn.
+    called : str
+        What errors call the part.
 
     Raises
     ------
@@ -120,7 +126,7 @@ def tracks_on(
     longest = max(fabric.warp_spacing, fabric.weft_spacing)
     along = None if direction is None else unit_direction(direction)
     drawn = [
-        None if points is None else draw(part, points, longest, f"{name}_path")
+        None if points is None else draw(part, points, longest, f"{name}_path", called)
         for name, points in zip(FAMILY, paths, strict=True)
     ]
     warp, weft = drawn

@@ -238,7 +238,7 @@ def test_flat_wing_skew_spar_and_a_left_ribbon_straight_down(rows_on_the_edge):
     from_wing = on_spar & (first_i >= 0) & (first_j < 29)
     assert from_ribbon.sum() > 200
     assert from_wing.sum() > 30
-    # an edge bent in its middle lacks 1 - cos(psi / 2) of a spacing: the columns beside the ribbon shear by that besides
+    # an edge bent in its middle lacks 1 - cos(psi / 2) of a spacing: the columns beside the ribbon shear by that too
     beside = ((first_i == 0) | (first_i == -1)) & (not rows_on_the_edge)
     off = np.abs(np.abs(cells) + SKEW_PSI)
     assert off[from_ribbon & ~beside].max() < 1e-6
