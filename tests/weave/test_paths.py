@@ -346,7 +346,7 @@ def test_net_keeps_what_was_drawn_and_can_be_laid_again():
 LEVEL = [[-50, 0, 0], [50, 0, 0]]
 REFUSED = {
     "a point off the mould": (
-        {"warp_path": [[0, 0, 0], [10, 0, 0], [20, 0, 25]]}, "warp_path: point 3 at (20, 0, 25) lies 25 mm from the mould",
+        {"warp_path": [[0, 0, 0], [10, 0, 0], [20, 0, 25]]}, "point 3 at (20, 0, 25) lies 25 mm from the mould",
     ),
     "not finite": ({"weft_path": [[0, 0, 0], [10, np.nan, 0]]}, "weft_path: point 2 is [10.0, nan, 0.0]"),
     "one point": ({"warp_path": [[0, 0, 0]]}, "warp_path has the shape (1, 3)"),
@@ -373,5 +373,5 @@ def test_refused_in_one_line(name):
 
 def test_curve_over_two_parts_is_refused():
     apart = GRID.joined(Mesh(GRID.vertices + np.array([250.0, 0, 0]), GRID.triangles))
-    with pytest.raises(meshdrape.MeshdrapeError, match="point 3 at .* from the part of the mould"):
+    with pytest.raises(meshdrape.MeshdrapeError, match=r"point 3 at .* from the part of the mould"):
         drape(apart, 10.0, warp_path=[[0, 0, 0], [90, 0, 0], [160, 0, 0]])
