@@ -37,9 +37,15 @@ def facets(span: float, width: float) -> FloatArray:
 
 
 def lay(
-    crease: Crease, reference: CreaseNet, y: FloatArray, chord: float, height: float, seed_row: int
+    crease: Crease,
+    reference: CreaseNet,
+    y: FloatArray,
+    chord: float,
+    height: float,
+    seed_row: int,
+    turn: float | None = None,
 ) -> DrapedCrease:
-    """Drape along row `seed_row` from y = 0. Lengths in metres; facet boundaries at `y`."""
+    """Drape along row `seed_row` from y = 0. Lengths in metres; facet boundaries at `y`; turn of the weft, rad."""
     mesh = wing_spar(
         lambda t: 1000 * crease.profile[0](t / 1000),
         lambda t: 1000 * crease.profile[1](t / 1000),
@@ -49,7 +55,11 @@ def lay(
     )
     spacing = reference.spacing
     net = meshdrape.drape(
-        mesh.mould(), meshdrape.Fabric(1000 * spacing), (1000 * (seed_row + 0.5) * spacing, 0, 0), (0, 1, 0)
+        mesh.mould(),
+        meshdrape.Fabric(1000 * spacing),
+        (1000 * (seed_row + 0.5) * spacing, 0, 0),
+        (0, 1, 0),
+        weft_turn=turn,
     )
     return read(net, reference, seed_row)
 

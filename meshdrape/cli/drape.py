@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.cli.main import DONE, FABRIC_MISSING
-from meshdrape.cli.options import add_mould_options, count, degrees, numbers, read_mould, spacing
+from meshdrape.cli.options import add_mould_options, count, degrees, numbers, read_mould, read_path, spacing
 from meshdrape.cli.progress import Progress
 
 POINT = "a point X,Y,Z in mm"
@@ -41,6 +41,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     start = parser.add_argument_group("the start")
     start.add_argument("--seed", type=numbers(3, POINT), metavar="X,Y,Z", help="default: near the middle")
     start.add_argument("--direction", type=numbers(3, VECTOR), metavar="X,Y,Z", help="warp; default: the long way")
+    for name in ("warp", "weft"):
+        start.add_argument(
+            f"--{name}-turn-deg", type=degrees, metavar="DEG",
+            help=f"turn of the {name} start fibre at the first crease it meets, right-handed about the normal",
+        )  # fmt: skip
+    for name in ("warp", "weft"):
+        start.add_argument(
+            f"--{name}-path",
+            metavar="FILE",
+            help=f"points of the {name} start fibre in mm: x y z a line, or an OBJ line",
+        )
     start.add_argument("--flip-normal", action="store_true", help="lay the cloth on the other side of the tool")
     out = parser.add_argument_group("the results")
     out.add_argument(
@@ -65,6 +76,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     net_path = Path(options.output)
     check_target(net_path)
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
+    warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()
     with Progress(options.quiet) as progress:
         progress.stage("reading the mould")
@@ -87,6 +99,10 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             options.direction,
             engine=options.engine,
             extent=options.extent,
+            warp_turn=options.warp_turn_deg,
+            weft_turn=options.weft_turn_deg,
+            warp_path=warp_path,
+            weft_path=weft_path,
             threads=options.threads,
             progress=progress.step,
         )
@@ -199,6 +215,11 @@ def _report(summary: dict[str, Any], files: list[Path]) -> str:
                 f"{angle['min']:.2f} to {angle['max']:.2f} deg from the reference, mean {angle['mean']:.2f}",
             ),
         )
+    for name, fibre in summary["start_fibres"].items():
+        if fibre["turn_deg"] is not None:
+            rows.insert(2, (f"{name} fibre", f"turned by {fibre['turn_deg']:g} deg at the crease"))
+        if fibre["path_points"] is not None:
+            rows.insert(2, (f"{name} fibre", f"drawn through {fibre['path_points']} points"))
     lines = [f"{name:>10}  {text}" for name, text in rows]
     lines += [
         f"{'face ' + str(face['id']):>10}  {face['name'] or ''} covered {face['coverage_percent']:.1f} %, "

@@ -125,3 +125,10 @@ def read_mould(options: argparse.Namespace) -> Mould:
     from meshdrape.mould import read_mould as read
 
     return read(options.mould, faces=options.faces, heal=options.heal, **reading(options))
+
+
+def read_path(file: str | None) -> Any:
+    """Points (n, 3) of a start fibre in a file; None where none is named."""
+    from meshdrape.mould.formats.points import read_points
+
+    return None if file is None else read_points(file)

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT, edge_ends
-from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould, turn_into
+from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould
 
 OUTSIDE = 2
 
@@ -33,8 +33,8 @@ def positions(mesh, net, i_first, out):
 def node_tangent(mesh, net, start, family, i, j, spacing):
     """Unit tangent of a fibre at a node, in the frame of its face: the mean of the edges before and after it.
 
-    NaN where the fibre has no edge at the node. At the seed it is the half-fibre's own start: on a vertex the two
-    halves need not be opposite.
+    NaN where the fibre has no edge at the node. At the seed it is the fibre's own start: on a vertex the two halves
+    need not be opposite.
     """
     n_warp, n_weft = net.status.shape
     if family == WARP:
@@ -44,15 +44,7 @@ def node_tangent(mesh, net, start, family, i, j, spacing):
         after = j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD
         before = j > 0 and net.status[i, j - 1] <= OFF_MOULD
     if i == start.origin[0] and j == start.origin[1]:
-        return turn_into(
-            mesh.plane,
-            mesh.neighbour,
-            mesh.frame,
-            start.face[family],
-            start.out[family, 0],
-            start.out[family, 1],
-            net.face[i, j],
-        )
+        return start.tangent[family, 0], start.tangent[family, 1]
     dx = 0.0
     dy = 0.0
     if after:

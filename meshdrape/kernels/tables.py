@@ -86,10 +86,14 @@ class Start(NamedTuple):
     """(4,) angle from each half-fibre to the next, counter-clockwise, rad."""
     n_nodes: NDArray[np.int64]
     """(4,) nodes on each half-fibre."""
+    tangent: FloatArray
+    """(2, 2) unit directions of warp and weft at the seed, in the frame of the face that holds it."""
     arrival: FloatArray
     """(4, n, 2) direction in which each half-fibre reaches its first, second ... node, in that node's frame."""
     through: NDArray[np.bool_]
     """(4, n) whether a half-fibre runs through a vertex on its first, second ... edge."""
+    arc: NDArray[np.bool_]
+    """(4, n) whether its first, second ... edge bends, so that its ends lie nearer than one spacing."""
     bent_key: NDArray[np.int64]
     """(k,) keys, ascending, of the edges that bend at a saddle vertex: no straight walk reaches their heads."""
     bent_ends: FloatArray

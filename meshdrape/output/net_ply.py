@@ -22,6 +22,8 @@ from meshdrape.output.comments import from_comments, to_comments
 from meshdrape.output.ply import Element, Rows, ply_writer
 from meshdrape.output.ply_reader import PlyFile, read_ply
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.fibre import FAMILY
+from meshdrape.weave.prescribed import StartFibres, prescribe
 from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+_PRESCRIBED: Final = ("warp_turn_rad", "weft_turn_rad", "warp_path", "weft_path")
 _WARP: Final = ("warp_x", "warp_y", "warp_z")
 _WEFT: Final = ("weft_x", "weft_y", "weft_z")
 
@@ -62,6 +65,8 @@ class StoredNet:
     seed : (3,) float64, mm, on the mould
     direction : (3,) float64
         Unit warp direction at the seed.
+    start_fibres : StartFibres
+        What was prescribed of the generators.
     seed_index : (int, int)
         Indices of the seed node, along warp and along weft.
     node_position : (n_warp, n_weft, 3) float64, mm
@@ -87,6 +92,7 @@ class StoredNet:
     fabric: Fabric
     seed: FloatArray
     direction: FloatArray
+    start_fibres: StartFibres
     seed_index: tuple[int, int]
     node_position: FloatArray
     node_status: NDArray[np.uint8]
@@ -245,6 +251,7 @@ def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
         "locking_angle_rad": fabric.locking_angle,
         "seed": np.asarray(net.seed).tolist(),
         "direction": np.asarray(net.direction).tolist(),
+        **_prescribed(net),
         "seed_index": [int(index) for index in net.seed_index],
         "nodes": list(net.node_status.shape),
         "mould_file": source,
@@ -254,6 +261,18 @@ def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
         "chord_tolerance": mould.chord_tolerance,
         "angle_tolerance_rad": mould.angle_tolerance,
     }
+
+
+def _prescribed(net: Net) -> dict[str, Any]:
+    """Return what was prescribed of the start fibres, by name; nothing for straight ones."""
+    given = net.start_fibres
+    values: dict[str, Any] = {}
+    for name, turn, path in zip(FAMILY, given.turns, given.paths, strict=True):
+        if turn is not None:
+            values[f"{name}_turn_rad"] = turn
+        if path is not None:
+            values[f"{name}_path"] = path.tolist()
+    return values
 
 
 def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
@@ -288,6 +307,7 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
         fabric=Fabric(tuple(made["spacing"]), made["initial_angle_rad"], made["locking_angle_rad"]),
         seed=np.array(made["seed"], dtype=np.float64),
         direction=np.array(made["direction"], dtype=np.float64),
+        start_fibres=prescribe(*(made.get(name) for name in _PRESCRIBED)),
         seed_index=(int(made["seed_index"][0]), int(made["seed_index"][1])),
         node_position=arrays[0],
         node_status=status,

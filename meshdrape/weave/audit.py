@@ -39,6 +39,9 @@ class Audit:
         straightest path need not be the shortest there, so they are kept apart.
     max_through_vertex : float
         Largest relative error among those.
+    n_arcs : int
+        Edges in the sample on which a start fibre bends as prescribed: one spacing along the fibre, less from end to
+        end. There is nothing to measure.
     n_skipped : int
         Edges with an end too near to a triangle's side to be measured.
     n_population : int
@@ -52,6 +55,7 @@ class Audit:
     n_second_routes: int
     n_through_vertex: int
     max_through_vertex: float
+    n_arcs: int
     n_skipped: int
     n_population: int
     seconds: float
@@ -75,9 +79,13 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
     counts = (np.count_nonzero(placed[:-1] & placed[1:]), np.count_nonzero(placed[:, :-1] & placed[:, 1:]))
     population = int(sum(counts))
     worst, worst_edge = float("nan"), (0, 0, 0)
-    measured = second = through = skipped = 0
+    measured = second = through = arcs = skipped = 0
     worst_through = 0.0
     for family, i, j in _sample(placed, population, edges, np.random.default_rng(seed)):
+        generator = _generator_edge(net, family, i, j)
+        if generator and net.start.arc[generator]:
+            arcs += 1
+            continue
         if measured + through and time.perf_counter() - begun > seconds:
             break
         spacing = net.fabric.warp_spacing if family == WARP else net.fabric.weft_spacing
@@ -87,7 +95,6 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
             skipped += 1
             continue
         error = abs(distance - spacing) / spacing
-        generator = _generator_edge(net, family, i, j)
         if generator and (net.start.through[generator] or distance < spacing * (1 - SECOND_ROUTE)):
             through += 1
             worst_through = max(worst_through, error)
@@ -103,6 +110,7 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
         n_second_routes=int(second),
         n_through_vertex=through,
         max_through_vertex=worst_through,
+        n_arcs=arcs,
         n_skipped=skipped,
         n_population=population,
         seconds=time.perf_counter() - begun,

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from meshdrape.kernels import locate
 from meshdrape.weave.measures import Measures
+from meshdrape.weave.net import Net
+from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
 
@@ -65,11 +67,7 @@ def balance(measures: Measures) -> Balance:
     predicted = np.full((n_i, n_j), np.nan)
     inside = np.zeros((n_i, n_j))
     np.add.at(inside, (cell[:, 0], cell[:, 1]), defect)
-    seed = net.surface.closest_point(net.seed)[0]
-    seed_defect = 0.0
-    corner = int(np.argmax(seed.barycentric))
-    if seed.barycentric[corner] > 1 - 1e-9:
-        seed_defect = float(net.surface.vertex_defect[net.surface.faces[seed.face, corner]])
+    initial = net.fabric.initial_angle
     whole = np.isfinite(measures.cell_shear)
     for si, sj, half in ((1, 1, 0), (-1, 1, 1), (-1, -1, 2), (1, -1, 3)):
         rows = slice(i0, n_i) if si > 0 else slice(0, i0)
@@ -85,13 +83,42 @@ def balance(measures: Measures) -> Balance:
         here = ((a > 0) | on_weft) & ((b > 0) | on_warp) & (a_at <= n) & (b_at <= m)
         weight = np.where(on_warp | on_weft, 0.5, 1.0)
         np.add.at(held, (np.maximum(a_at, 0)[here], np.maximum(b_at, 0)[here]), (weight * defect)[here])
-        held[0, 0] += seed_defect * float(net.start.sector[half] / net.start.sector.sum())
+        # what the sector at the seed lacks: its share of the seed's defect, or an angle drawn otherwise
+        held[0, 0] += (initial if si == sj else np.pi - initial) - float(net.start.sector[half])
         total = held.cumsum(axis=0).cumsum(axis=1)
         quadrant = 0.25 * (total[1:, 1:] + total[:-1, 1:] + total[1:, :-1] + total[:-1, :-1])
         gaps = ~whole[rows, columns][::si, ::sj]
         quadrant[gaps.cumsum(axis=0).cumsum(axis=1) > 0] = np.nan
         predicted[rows, columns] = si * sj * quadrant[::si, ::sj]
+    if net.start_fibres:
+        warp, weft = (_turned(net, family) for family in (0, 1))
+        predicted += warp[:, None] - weft[None, :]
     return Balance(predicted, inside, measures)
+
+
+def _turned(net: Net, family: int) -> FloatArray:
+    """Turn of a generator from its first edge on that side of the seed to each edge, (n_warp - 1,) or (n_weft - 1,)."""
+    start, lattice = net.start, net.lattice
+    i0, j0 = net.seed_index
+    out = (lattice.warp_out[:, j0], lattice.weft_out[i0])[family]
+    status = (lattice.status[:, j0], lattice.status[i0])[family]
+    at = net.seed_index[family]
+    turned = np.full(len(status) - 1, np.nan)
+    for half, sense in ((family, 1), (family + 2, -1)):
+        total = 0.0
+        for k in range(len(status) - 1 - at if sense > 0 else at):
+            edge = at + k if sense > 0 else at - k - 1
+            if status[at + sense * (k + 1)] > NodeStatus.OFF_MOULD:
+                break
+            if k:
+                total += _angle(start.arrival[half, k - 1], out[edge])
+            turned[edge] = total
+    return turned
+
+
+def _angle(a: FloatArray, b: FloatArray) -> float:
+    """From one plane direction to another, counter-clockwise, rad."""
+    return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]))
 
 
 def _vertex_cells(

@@ -13,9 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from meshdrape.errors import FabricError, StartError
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.fibre import Course, Track
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net
+from meshdrape.weave.prescribed import prescribe, tracks_on, turns_on
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -33,28 +35,47 @@ def drape(
     engine: str = "fast",
     extent: tuple[float, float, float, float] | None = None,
     *,
+    warp_turn: float | None = None,
+    weft_turn: float | None = None,
+    warp_path: ArrayLike | None = None,
+    weft_path: ArrayLike | None = None,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Net:
     """The fishnet of a fabric on a mould.
 
     The warp generator leaves the seed along `direction`, projected on the surface, the weft generator at the fabric's
-    initial angle counter-clockwise about the normal; both are straightest geodesics. Every other node lies at one
-    spacing, measured by exact polyhedral geodesic distance, from its two neighbours nearer to the seed.
+    initial angle counter-clockwise about the normal; both are straightest geodesics, unless told otherwise. Every
+    other node lies at one spacing, measured by exact polyhedral geodesic distance, from its two neighbours nearer to
+    the seed.
 
     Parameters
     ----------
     mould : Mould
     fabric : Fabric
     seed : (3,) float, mm
-        Projected on the mould; default the point of the mould nearest to its centroid.
+        Projected on the mould; default the point of the mould nearest to its centroid. With a path, the seed is the
+        path's nearest point, by default its middle; with two, their nearest crossing, by default that nearest to the
+        middle of the warp's.
     direction : (3,) float
-        Default the longest axis of the bounding box that is not along the normal.
+        Default the longest axis of the bounding box that is not along the normal. With a path it only chooses which
+        way along it the net counts; default as the path is drawn.
     engine : "fast" or "libigl"
         "libigl" has every node off the generators placed from libigl's distances alone: slow, the reference that
         "fast" agrees with to 1e-9 of the spacing.
     extent : (warp-, warp+, weft-, weft+), mm
         Cloth from the seed each way; default as far as the mould reaches.
+    warp_turn, weft_turn : float, rad
+        Turn of that generator where it first crosses a crease, each half at its own: counter-clockwise as seen from
+        the side the cloth lies on (right-handed about the mould's normal), from the straightest way over the crease.
+        Nodes keep one spacing along the bent fibre. Rows that do not start beyond the crease do not depend on it, to
+        the bit. A crease is an edge at which the normals of its two triangles differ by more than 20 degrees; between
+        two faces of a CAD file more than 2 degrees, and twice the angle tolerance, suffice. A rounded edge has none.
+    warp_path, weft_path : (n, 3) float, mm
+        Points of that generator in their order: each projected on the mould, joined by geodesics, with nodes at equal
+        arc length along the curve from the seed on, both ways; past its ends the fibre goes straight on. It keeps its
+        own geodesic curvature, so its edges are arcs whose ends lie nearer than one spacing. The other generator
+        crosses it straight at the initial angle, unless it has a path of its own: then at the angle as drawn.
     threads : int
         Default the number of cores. The net does not depend on it.
     progress : callable
@@ -67,7 +88,9 @@ def drape(
     Raises
     ------
     StartError
-        If the seed lies farther than one spacing from the mould, or the direction is zero or along the normal.
+        If the seed lies farther than one spacing from the mould, the direction is zero or along the normal, or a
+        generator that is to turn never meets a crease or turns back over it; if a point of a path lies farther than
+        one spacing from the mould, or two paths do not cross.
     FabricError
         If the spacing is larger than the mould.
     NetError
@@ -83,9 +106,12 @@ def drape(
         msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
         raise FabricError(msg)
     extent = _checked_extent(extent)
+    given = prescribe(warp_turn, weft_turn, warp_path, weft_path)
+    drawn = given.paths[0] if given.paths[0] is not None else given.paths[1]
     whole = mould.surface
+    asked = seed is not None
     if seed is None:
-        seed = whole.closest_point(default_seed(whole))[0].position(whole)
+        seed = whole.closest_point(default_seed(whole) if drawn is None else drawn[0])[0].position(whole)
     seed = np.asarray(seed, dtype=np.float64)
     if seed.shape != (3,) or not np.isfinite(seed).all():
         msg = f"seed {seed.tolist()} is not a point; give X,Y,Z in mm"
@@ -107,9 +133,20 @@ def drape(
             f"the mould has {whole.n_components} separate parts; draped the seed's, {len(part.faces)} triangles"
         )
         point, _ = part.closest_point(seed)
+    turns = turns_on(part, mould.triangle_face[part_face], mould.angle_tolerance, given.turns)
+    tracks: tuple[Track | None, Track | None] = (None, None)
+    if drawn is not None:
+        called = "the mould" if part is whole else "the part of the mould it is drawn on"
+        tracks, point = tracks_on(part, fabric, given.paths, seed if asked else None, direction, called)
+        moved = float(np.linalg.norm(point.position(part) - seed))
+        if asked and moved > max(distance, 1e-6 * longest):
+            notes.append(f"the seed was moved {moved:.4g} mm onto the drawn fibre")
     if direction is None:
         direction = default_direction(part, point.face)
-    laid = lay(part, fabric, point, direction, extent, threads, progress, settle_every=engine == "libigl")
+    courses = (Course(turns[0], tracks[0]), Course(turns[1], tracks[1]))
+    laid = lay(
+        part, fabric, point, direction, extent, threads, progress, courses=courses, settle_every=engine == "libigl"
+    )
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
     trim(surface, fabric, lattice, start, threads)
@@ -123,7 +160,8 @@ def drape(
         start=start,
         seed=point.position(part),
         seed_distance=distance,
-        direction=start.out[0, 0] * frame[3:6] + start.out[0, 1] * frame[6:9],
+        direction=start.tangent[0, 0] * frame[3:6] + start.tangent[0, 1] * frame[6:9],
+        start_fibres=given,
         notes=tuple(notes),
         settled_by_libigl=laid.settled,
         threads=threads,

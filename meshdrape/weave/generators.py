@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from meshdrape.errors import NetError
+from meshdrape.errors import NetError, StartError
 from meshdrape.kernels.emit import border_status
-from meshdrape.kernels.generator import trace
 from meshdrape.kernels.tables import Lattice, Start
-from meshdrape.surface import Surface
+from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.start import SeedStar
+from meshdrape.weave.fibre import FAMILY, STRAIGHT, Courses, HalfFibre, straight_half, track_half
+from meshdrape.weave.rays import Ray, Rays
+from meshdrape.weave.start import SeedStar, seed_star, star_of_rays
 from meshdrape.weave.status import NodeStatus
 
 # Bytes a lattice takes per entry: face, place, two directions, status.
@@ -45,10 +46,105 @@ def generator_counts(surface: Surface, fabric: Fabric, extent: Extent | None) ->
     return [int(min(length / step + 1e-9, MOST_NODES)) for length, step in zip(lengths, spacing, strict=True)]
 
 
+def start_fibres(
+    surface: Surface,
+    fabric: Fabric,
+    point: SurfacePoint,
+    direction: ArrayLike,
+    counts: list[int],
+    memory: int,
+    courses: Courses = STRAIGHT,
+) -> tuple[SeedStar, list[HalfFibre]]:
+    """The star of the seed, and the half-fibres +warp, +weft, -warp, -weft as far as surface and `counts` let them.
+
+    Parameters
+    ----------
+    point : SurfacePoint
+        The seed; on the tracks, if there are any.
+    direction : (3,)
+        Of the warp, where neither fibre follows a track.
+    memory : int
+        Bytes the lattice may take.
+    courses : (warp, weft)
+
+    Raises
+    ------
+    NetError
+        If a fibre alone does not fit.
+    StartError
+        If a fibre that is to turn never meets a crease, or turns back over it.
+    """
+    spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
+    for count in counts:
+        check_memory(count + 1, 1, fabric, memory)
+    halves: dict[int, HalfFibre] = {}
+    for family, course in enumerate(courses):
+        if course.track is not None:
+            for half, track in ((family, course.track), (family + 2, course.track.reversed())):
+                halves[half] = track_half(surface, point, track, spacing[half], counts[half])
+    if halves:
+        rays = Rays(surface, point)
+        leave, tangents = _leaving(rays, halves, fabric.initial_angle)
+        star = star_of_rays(surface, rays, leave, tangents)
+    else:
+        star = seed_star(surface, point, direction, fabric.initial_angle)
+    for family, course in enumerate(courses):
+        if course.track is not None:
+            continue
+        met = False
+        for half in (family, family + 2):
+            ray = star.ray(half)
+            halves[half], turned = straight_half(surface, ray, half, spacing[half], counts[half], course.turn)
+            met |= turned
+        if course.turn is not None and not met:
+            name = FAMILY[family]
+            msg = (
+                f"the {name} meets no crease to turn at; move the seed or the direction so that it crosses a sharp "
+                f"edge, or give the whole fibre as {name}_path"
+            )
+            raise StartError(msg)
+    fibres = [halves[half] for half in range(4)]
+    if not all(course.track for course in courses) and any(fibre.leave for fibre in fibres):
+        # a turn on the first edge: the star is that of the edges
+        rays = Rays(surface, point)
+        frame = [rays.angle(star.face[0], *tangent) for tangent in star.tangent]
+        leave = [fibre.leave or star.ray(half) for half, fibre in enumerate(fibres)]
+        star = star_of_rays(surface, rays, leave, (frame[0], frame[1]))
+    return star, fibres
+
+
+def _leaving(rays: Rays, halves: dict[int, HalfFibre], initial_angle: float) -> tuple[list[Ray], tuple[float, float]]:
+    """Directions of the four half-fibres where at least one fibre follows a track, and the angles of both fibres.
+
+    A fibre's own direction halves the angle its two sides make; a straight fibre crosses it at the initial angle.
+    """
+    total = rays.total
+    part = initial_angle / (2 * math.pi) * total
+    angle: dict[int, float] = {}
+    tangent: dict[int, float] = {}
+    for half, fibre in halves.items():
+        assert fibre.leave is not None
+        angle[half] = rays.angle(fibre.leave.face, fibre.leave.dx, fibre.leave.dy)
+    for family in (0, 1):
+        if family in halves:
+            left = (angle[family + 2] - angle[family]) % total
+            tangent[family] = angle[family] - 0.5 * (0.5 * total - left)
+    if 0 not in halves:
+        tangent[0] = tangent[1] - part
+    if 1 not in halves:
+        tangent[1] = tangent[0] + part
+    leave: list[Ray] = []
+    for half in range(4):
+        drawn = halves[half].leave if half in halves else None
+        leave.append(drawn or rays.ray(tangent[half % 2] + (0.5 * total if half > 1 else 0.0)))
+    return leave, (tangent[0], tangent[1])
+
+
 def lay_generators(
     surface: Surface,
     fabric: Fabric,
     star: SeedStar,
+    halves: list[HalfFibre],
     counts: list[int],
     memory: int,
     reach: Extent | None = None,
@@ -57,6 +153,8 @@ def lay_generators(
 
     Parameters
     ----------
+    halves : list of HalfFibre
+        +warp, +weft, -warp, -weft.
     memory : int
         Bytes the lattice may take.
     reach : (warp-, warp+, weft-, weft+), mm, optional
@@ -69,24 +167,7 @@ def lay_generators(
     """
     mesh = surface.unfolding
     spacing = (fabric.warp_spacing, fabric.weft_spacing) * 2
-    halves = []
-    for half in range(4):
-        n = counts[half]
-        check_memory(n + 1, 1, fabric, memory)
-        fibre: list[NDArray[Any]] = [np.empty(n, dtype=np.int32), *(np.empty((n, 2)) for _ in range(3))]
-        fibre.append(np.zeros(n, dtype=np.bool_))
-        _, ended, _ = trace(
-            mesh,
-            star.face[half],
-            *star.xy[half],
-            *star.out[half],
-            star.far_edge[half],
-            spacing[half],
-            n,
-            *fibre,
-        )
-        halves.append([array[:ended] for array in fibre])
-    set_nodes = [len(fibre[0]) for fibre in halves]
+    set_nodes = [len(fibre) for fibre in halves]
     room = set_nodes
     if reach is not None:
         wanted = [int(np.ceil(reach[k] / step)) for k, step in zip((1, 3, 0, 2), spacing, strict=True)]
@@ -103,22 +184,24 @@ def lay_generators(
     lattice.status[i0, j0] = NodeStatus.PLACED
     arrival = np.zeros((4, max(shape), 2))
     through = np.zeros((4, max(shape)), dtype=np.bool_)
-    for half, (face, xy, out, into, passes) in enumerate(halves):
+    arc = np.zeros((4, max(shape)), dtype=np.bool_)
+    for half, fibre in enumerate(halves):
         si, sj = SENSE[half]
-        k = np.arange(1, len(face) + 1)
+        k = np.arange(1, len(fibre) + 1)
         i, j = i0 + si * k, j0 + sj * k
-        lattice.face[i, j] = face
-        lattice.xy[i, j] = xy
-        side = np.empty(len(face), dtype=np.uint8)
-        border_status(mesh, face, xy, border_slack(fabric), side)
+        lattice.face[i, j] = fibre.face
+        lattice.xy[i, j] = fibre.xy
+        side = np.empty(len(fibre), dtype=np.uint8)
+        border_status(mesh, fibre.face, fibre.xy, border_slack(fabric), side)
         lattice.status[i, j] = side
-        arrival[half, : len(face)] = into
-        through[half, : len(face)] = passes
+        arrival[half, : len(fibre)] = fibre.into
+        through[half, : len(fibre)] = fibre.through
+        arc[half, : len(fibre)] = fibre.arc
         # the edge that leaves each node but the last, kept at its lower index
         if si:
-            lattice.warp_out[i[:-1] - (si < 0), j0] = out[:-1]
+            lattice.warp_out[i[:-1] - (si < 0), j0] = fibre.out[:-1]
         else:
-            lattice.weft_out[i0, j[:-1] - (sj < 0)] = out[:-1]
+            lattice.weft_out[i0, j[:-1] - (sj < 0)] = fibre.out[:-1]
     start = Start(
         origin=np.array([i0, j0]),
         face=star.face,
@@ -126,8 +209,10 @@ def lay_generators(
         out=star.out,
         sector=star.sector,
         n_nodes=np.array(set_nodes),
+        tangent=star.tangent,
         arrival=arrival,
         through=through,
+        arc=arc,
         bent_key=np.empty(0, dtype=np.int64),
         bent_ends=np.empty((0, 4)),
     )

@@ -15,6 +15,7 @@ from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.bays import fill_bays
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.fibre import STRAIGHT, Courses
 from meshdrape.weave.generators import (
     MOST_NODES,
     Extent,
@@ -23,16 +24,19 @@ from meshdrape.weave.generators import (
     free_memory,
     generator_counts,
     lay_generators,
+    start_fibres,
 )
 from meshdrape.weave.judge import Judge
 from meshdrape.weave.net import run_kernel
 from meshdrape.weave.quadrants import fill
-from meshdrape.weave.start import seed_star
 from meshdrape.weave.status import NodeStatus
 
 # Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
 # find a place on it; two more carry the hem.
 COLLAR_DEPTH = 4.0
+# A fibre turned at a crease may leave the mould sideways while its rows still lie on it: the collar is then as deep as
+# this share of the longest way the fibre may run, whatever its turn: rows it does not feed keep their every bit.
+STRAY = 0.2
 # Cells of cloth kept past the last that touches the mould.
 HEM = 2
 # A net of more nodes than this is first laid coarsely, with about that many nodes, to learn how far it reaches:
@@ -59,6 +63,7 @@ def lay(
     threads: int,
     progress: Callable[[int], None] | None = None,
     *,
+    courses: Courses = STRAIGHT,
     settle_every: bool = False,
 ) -> Laid:
     """Lay a sheet from a seed point of a connected surface, without an end where it meets itself, untrimmed.
@@ -70,6 +75,8 @@ def lay(
         The seed, on `part`.
     direction : (3,)
         Of the warp.
+    courses : (warp, weft)
+        How the start fibres run.
     settle_every : bool
         Have libigl place every node.
     extent : (warp-, warp+, weft-, weft+), mm, optional
@@ -78,10 +85,10 @@ def lay(
     ------
     NetError
         If the net would not fit in the memory.
+    StartError
+        If a start fibre cannot run as asked.
     """
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
-    surface = _with_collar(part, COLLAR_DEPTH * longest)
-    star = seed_star(surface, point, direction, fabric.initial_angle)
+    surface = _with_collar(part, _collar_depth(part, fabric, extent, courses))
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
     bounded = part.area if extent is None else min(part.area, (extent[0] + extent[1]) * (extent[2] + extent[3]))
@@ -91,8 +98,9 @@ def lay(
         check_memory(int(cells), 1, fabric, memory)
         scale = float(np.sqrt(cells / SCOUT_NODES))
         coarse = Fabric((scale * fabric.warp_spacing, scale * fabric.weft_spacing), fabric.initial_angle)
-        reach = _reach(lay(part, coarse, point, direction, extent, threads), coarse)
-    lattice, start = lay_generators(surface, fabric, star, counts, memory, reach)
+        reach = _reach(lay(part, coarse, point, direction, extent, threads, courses=courses), coarse)
+    star, halves = start_fibres(surface, fabric, point, direction, counts, memory, courses)
+    lattice, start = lay_generators(surface, fabric, star, halves, counts, memory, reach)
     settled = 0
     while True:
         judge = Judge(surface, fabric, lattice, start, settle_every=settle_every)
@@ -116,6 +124,16 @@ def lay(
             lattice, start = _grown(lattice, start, grow, fabric, memory)
             lattice.status[lattice.status == NodeStatus.NOT_REACHED] = NodeStatus.OUTSIDE
     return Laid(surface, lattice, start, settled)
+
+
+def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:
+    """Depth of the collar, mm."""
+    depth = COLLAR_DEPTH * max(fabric.warp_spacing, fabric.weft_spacing)
+    for course, sides in zip(courses, ((0, 1), (2, 3)), strict=True):
+        if course.turn is not None:
+            longest = part.diagonal if extent is None else min(part.diagonal, max(extent[k] for k in sides))
+            depth = max(depth, STRAY * longest)
+    return depth
 
 
 def _with_collar(part: Surface, depth: float) -> Surface:

@@ -15,6 +15,7 @@ from meshdrape.kernels import emit
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.prescribed import StartFibres
 from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ class Net:
     seed_distance : float
         How far the seed asked for lay from the mould, mm.
     direction : (3,) unit warp direction at the seed
+    start_fibres : StartFibres
+        What was prescribed of the generators.
     notes : tuple of str
         What the user should know of how the net was laid.
     threads : int
@@ -55,6 +58,7 @@ class Net:
     seed: FloatArray
     seed_distance: float
     direction: FloatArray
+    start_fibres: StartFibres = field(default_factory=StartFibres)
     notes: tuple[str, ...] = ()
     settled_by_libigl: int = 0
     threads: int = field(default=1, repr=False)

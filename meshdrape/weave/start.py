@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import StartError
 from meshdrape.kernels.generator import corner_angle, corner_place, turn_about_vertex
+from meshdrape.kernels.walk import turn_into
 from meshdrape.surface import Surface, SurfacePoint
+from meshdrape.weave.rays import SNAP, Ray, Rays
 
 FloatArray = NDArray[np.float64]
-
-# Barycentric distance below which a seed lies on the edge or the vertex: round-off of projecting it.
-SNAP = 1e-9
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,9 @@ class SeedStar:
     out : (4, 2) unit directions in those frames
     far_edge : (4,) the edge each half-fibre must cross first where the seed is a vertex, else -1
     sector : (4,) angles between neighbouring half-fibres, counter-clockwise, rad
+    tangent : (2, 2) unit directions of warp and weft themselves, in the frame of the first face
+        Those of the half-fibres +warp and +weft, but where a fibre bends on its first edges: then `out` is the
+        direction of those edges.
     """
 
     face: NDArray[np.int32]
@@ -36,6 +39,12 @@ class SeedStar:
     out: FloatArray
     far_edge: NDArray[np.int64]
     sector: FloatArray
+    tangent: FloatArray
+
+    def ray(self, half: int) -> Ray:
+        """A half-fibre's start."""
+        (x, y), (dx, dy) = self.xy[half], self.out[half]
+        return Ray(int(self.face[half]), float(x), float(y), float(dx), float(dy), int(self.far_edge[half]))
 
 
 def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initial_angle: float) -> SeedStar:
@@ -49,12 +58,7 @@ def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initi
     StartError
         If the direction is zero, not finite, or along the normal.
     """
-    along = np.asarray(direction, dtype=np.float64)
-    size = float(np.linalg.norm(along)) if along.shape == (3,) else math.nan
-    if not (math.isfinite(size) and size > 0):
-        msg = f"direction {_triple(along)} is no direction: give three numbers that are not all zero"
-        raise StartError(msg)
-    along = along / size
+    along = unit_direction(direction)
     where = point.barycentric
     corner = int(np.argmax(where))
     if where[corner] >= 1 - SNAP:
@@ -73,6 +77,22 @@ def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initi
     return _in_face(surface, face, x, y, along, initial_angle)
 
 
+def unit_direction(direction: ArrayLike) -> FloatArray:
+    """A direction of unit length, (3,).
+
+    Raises
+    ------
+    StartError
+        If it is zero or not finite.
+    """
+    along = np.asarray(direction, dtype=np.float64)
+    size = float(np.linalg.norm(along)) if along.shape == (3,) else math.nan
+    if not (math.isfinite(size) and size > 0):
+        msg = f"direction {_triple(along)} is no direction: give three numbers that are not all zero"
+        raise StartError(msg)
+    return np.asarray(along / size)
+
+
 def _in_face(surface: Surface, face: int, x: float, y: float, along: FloatArray, initial_angle: float) -> SeedStar:
     dx, dy = _planar(surface, face, along)
     size = math.hypot(dx, dy)
@@ -80,12 +100,14 @@ def _in_face(surface: Surface, face: int, x: float, y: float, along: FloatArray,
         raise StartError(_along_normal(along))
     first = math.atan2(dy, dx)
     angles = first + np.array([0.0, initial_angle, math.pi, math.pi + initial_angle])
+    out = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     return SeedStar(
         face=np.full(4, face, dtype=np.int32),
         xy=np.tile([x, y], (4, 1)),
-        out=np.stack([np.cos(angles), np.sin(angles)], axis=1),
+        out=out,
         far_edge=np.full(4, -1, dtype=np.int64),
         sector=np.array([initial_angle, math.pi - initial_angle] * 2),
+        tangent=out[:2],
     )
 
 
@@ -130,6 +152,35 @@ def _at_vertex(surface: Surface, face: int, corner: int, along: FloatArray, init
         out=np.array(outs, dtype=np.float64),
         far_edge=np.array(far, dtype=np.int64),
         sector=np.array([part, total / 2 - part] * 2),
+        tangent=np.array([outs[0], turn_into(mesh.plane, mesh.neighbour, mesh.frame, faces[1], *outs[1], faces[0])]),
+    )
+
+
+def star_of_rays(surface: Surface, rays: Rays, leave: Sequence[Ray], tangents: tuple[float, float]) -> SeedStar:
+    """Half-fibres that leave a seed in given directions.
+
+    Parameters
+    ----------
+    rays : Rays
+        Of the seed.
+    leave : four Ray
+        +warp, +weft, -warp, -weft.
+    tangents : (warp, weft)
+        Angles of the fibres themselves.
+    """
+    angle = np.array([rays.angle(ray.face, ray.dx, ray.dy) for ray in leave])
+    mesh, face = surface.unfolding, leave[0].face
+    tangent = []
+    for at in tangents:
+        ray = rays.ray(at)
+        tangent.append(turn_into(mesh.plane, mesh.neighbour, mesh.frame, ray.face, ray.dx, ray.dy, face))
+    return SeedStar(
+        face=np.array([ray.face for ray in leave], dtype=np.int32),
+        xy=np.array([[ray.x, ray.y] for ray in leave]),
+        out=np.array([[ray.dx, ray.dy] for ray in leave]),
+        far_edge=np.array([ray.far_edge for ray in leave], dtype=np.int64),
+        sector=(np.roll(angle, -1) - angle) % rays.total,
+        tangent=np.array(tangent),
     )
 
 

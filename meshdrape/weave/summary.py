@@ -12,6 +12,7 @@ from meshdrape import __version__
 from meshdrape.kernels import locate
 from meshdrape.weave.audit import Audit
 from meshdrape.weave.balance import Balance
+from meshdrape.weave.fibre import FAMILY
 from meshdrape.weave.field import MouldField
 from meshdrape.weave.measures import Measures
 from meshdrape.weave.net import Net
@@ -78,6 +79,7 @@ def summarise(
         "seed": net.seed.tolist(),
         "seed_distance_mm": net.seed_distance,
         "direction": net.direction.tolist(),
+        "start_fibres": _start_fibres(net),
         "nodes": net.count(NodeStatus.PLACED),
         "cells": measures.n_cells,
         "cloth_mm": {"warp": warp, "weft": weft, "area_mm2": area},
@@ -103,6 +105,18 @@ def summarise(
     }
     summary["warnings"] = _warnings(measures, summary, noise)
     return summary
+
+
+def _start_fibres(net: Net) -> dict[str, dict[str, Any]]:
+    """How each generator runs: its turn at a crease, or how many points it was drawn through; null for neither."""
+    given = net.start_fibres
+    return {
+        name: {
+            "turn_deg": None if turn is None else math.degrees(turn),
+            "path_points": None if path is None else len(path),
+        }
+        for name, turn, path in zip(FAMILY, given.turns, given.paths, strict=True)
+    }
 
 
 def _angles(field: MouldField, angle: Any) -> dict[str, float] | None:

@@ -17,7 +17,10 @@ def follow(surface, seed, direction, spacing, count):
     face, through = np.empty(count, dtype=np.int32), np.zeros(count, dtype=np.bool_)
     xy, out, into = (np.empty((count, 2)) for _ in range(3))
     along = in_face(surface, place.face, direction)
-    code, n, _ = trace(surface.unfolding, *place, *along, -1, spacing, count, face, xy, out, into, through)
+    no_crease = np.zeros((0, 3), dtype=np.bool_)
+    code, n, _, _ = trace(
+        surface.unfolding, no_crease, 0.0, *place, *along, -1, 0.0, spacing, count, face, xy, out, into, through
+    )
     node = np.array([Place(face[k], *xy[k]).in_space(surface) for k in range(n)]).reshape(-1, 3)
     assert np.abs(np.linalg.norm(out[:n], axis=1) - 1).max(initial=0) < 1e-12
     assert np.abs(np.linalg.norm(into[:n], axis=1) - 1).max(initial=0) < 1e-12

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.prescribed import StartFibres
 from meshdrape.weave.status import NodeStatus
 
 
@@ -29,6 +30,9 @@ class KnownMould:
         return Surface.from_arrays(self.vertices, self.triangles)
 
 
+DRAWN = StartFibres(warp_turn=0.1, weft_path=np.array([[0, 1, 2], [0.1, 1 / 3, 2e-17]]))
+
+
 @dataclass(frozen=True, eq=False)
 class KnownNet:
     mould: KnownMould
@@ -38,6 +42,7 @@ class KnownNet:
     seed_index: tuple[int, int]
     node_position: NDArray[np.float64]
     node_status: NDArray[np.uint8]
+    start_fibres: StartFibres = DRAWN
     warp_direction: NDArray[np.float64] = field(init=False)
     weft_direction: NDArray[np.float64] = field(init=False)
 

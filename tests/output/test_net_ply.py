@@ -35,6 +35,9 @@ def test_the_round_trip_is_exact(written):
     assert stored.seed.tobytes() == net.seed.tobytes()
     assert stored.direction.tobytes() == net.direction.tobytes()
     assert stored.seed_index == net.seed_index
+    assert stored.start_fibres.turns == net.start_fibres.turns
+    assert stored.start_fibres.warp_path is None
+    assert np.array_equal(stored.start_fibres.weft_path, net.start_fibres.weft_path)
 
 
 def test_meshlab_sees_nodes_cells_shear_colours_and_the_flat_sheet(written, meshlab):

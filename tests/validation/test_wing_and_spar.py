@@ -11,7 +11,7 @@ gamma is the angle of the left-most cross-wise ribbon on the spar.
 import numpy as np
 import pytest
 from creased import facets, lay
-from lattice import cells_at, placed, shear_deg
+from lattice import cells_at, nodes_at, offsets, placed, shear_deg
 from moulds import Mesh, grid_triangles, wing_spar
 from references import Crease, CreaseNet
 
@@ -75,6 +75,81 @@ def test_figure_4(spacing):
     assert np.degrees(np.abs(draped.shear[reference.region == 0]).max()) < 1e-7
 
 
+def turned(spacing, gamma, ahead=0.2):
+    """Figure 4 with the left ribbon at gamma, degrees, on a mould that goes on `ahead` m to its left.
+
+    The ribbon goes straight over the edge, where psi(0) = 0. A turn right-handed about the spar's normal leads it, as
+    it runs down, towards smaller y, so it is -gamma.
+    """
+    width = 0.5e-3
+    crease = figure_4()
+    y = (np.arange(-round(ahead / width), round(1.35 / width) + 2) - 0.5) * width
+    reference = reference_net(crease, spacing, np.radians(gamma))
+    return lay(crease, reference, y, 3.0, 1.2, round(0.5 / spacing) - 1, -np.radians(gamma)), width**2 / 10
+
+
+@pytest.mark.parametrize("spacing", [0.05, 0.02])
+def test_figure_4_with_the_left_ribbon_turned(spacing):
+    """Rows that start on the turned ribbon shear as published, nodes lie where the unrolled net has them."""
+    draped, h = turned(spacing, TURNED)
+    assert draped.node_error() < 1.5 * h + 1e-12
+    reference = draped.reference
+    slack = np.degrees(min(np.sqrt(2 * 0.8 * h), h / spacing)) + 0.01
+    assert np.degrees(draped.shear_error(reference.region > 0)) < slack
+    found = [np.degrees(np.abs(draped.shear[reference.region == region]).max()) for region in (1, 2)]
+    assert found == pytest.approx([FIGURE_4_TURNED[spacing], FIGURE_4[spacing][1]], abs=slack)
+    # one spacing along the bent ribbon, not across the bend: half of it on the wing, half on the spar
+    i, j = draped.net.seed_index
+    j += round(0.5 / spacing) - 1
+    above, below = draped.net.node_position[i, j : j + 2]
+    assert above[0] == pytest.approx(500 * spacing, abs=1e-6)
+    assert -below[2] == pytest.approx(500 * spacing * np.cos(np.radians(TURNED)), abs=1e3 * h + 1e-6)
+
+
+def test_left_ribbon_that_leaves_the_mould_feeds_its_rows_all_the_same():
+    """The spar begins at y = 0 and the ribbon runs off it by ten spacings: shear on the mould is as published."""
+    spacing = 0.02
+    draped, _ = turned(spacing, TURNED, ahead=0.0)
+    off = draped.net.node_position[draped.net.seed_index[0], -1]
+    assert not np.isfinite(off).all() or off[1] < -3 * 1000 * spacing
+    here = (draped.reference.region == 1) & np.isfinite(draped.shear)
+    # all but the cells of the first columns that lie off the mould and were trimmed
+    assert here.sum() > 0.9 * (draped.reference.region == 1).sum()
+    assert np.degrees(np.abs(draped.shear[here]).max()) == pytest.approx(FIGURE_4_TURNED[spacing], abs=0.02)
+
+
+@pytest.mark.parametrize("spacing", [0.05, 0.02])
+def test_rows_from_the_wing_do_not_change_by_one_bit(spacing):
+    """Whatever the turn: nodes of all rows that start on the wing, and the shear between them.
+
+    Past the mould's border it is the neighbouring row's cells that say which nodes of the last row are kept as a hem.
+    """
+    nets = [turned(spacing, gamma)[0].net for gamma in (0.0, TURNED, -TURNED, 1.0, -20.0)]
+    straight = nets[0]
+    _, j0 = straight.seed_index
+    last = j0 + round(0.5 / spacing)  # rows on the wing, the seed's the first
+    shear = meshdrape.measure(straight).cell_shear
+    for net in nets[1:]:
+        i, j = (a - b for a, b in zip(net.seed_index, straight.seed_index, strict=True))
+        shape = [min(a, b) for a, b in zip(net.shape, straight.shape, strict=True)]
+        assert (i, j) == (0, 0)
+        assert not np.array_equal(
+            net.node_position[: shape[0], : shape[1]], straight.node_position[: shape[0], : shape[1]]
+        )
+        pair = [one.node_status[:, :last] for one in (net, straight)]
+        assert all((one[shape[0] :] == meshdrape.NodeStatus.OUTSIDE).all() for one in pair)
+        pair = [one[: shape[0]] for one in pair]
+        hem = (pair[0] != pair[1]) & (np.maximum(*pair) == 2) & (np.minimum(*pair) == 1)
+        assert not hem[:, :-3].any()
+        assert np.array_equal(pair[0][~hem], pair[1][~hem])
+        there = ~hem & (pair[0] <= 1)
+        places = [one.node_position[: shape[0], :last][there] for one in (net, straight)]
+        assert np.array_equal(places[0].view(np.int64), places[1].view(np.int64))
+        cells = [one[: shape[0] - 1, : last - 1] for one in (meshdrape.measure(net).cell_shear, shear)]
+        both = np.isfinite(cells[0]) & np.isfinite(cells[1])
+        assert np.array_equal(cells[0][both], cells[1][both])
+
+
 def test_maximum_of_the_whole_net_is_the_left_ribbons():
     """`max_shear` speaks of the cells that straddle the crease too, and may not fall short of the published one."""
     y = facets(1.0, 0.5e-3)
@@ -130,6 +205,45 @@ def test_flat_wing_and_a_spar_that_turns_skew():
     assert (np.isclose(found, 0, atol=2e-6)).sum() > 30
     # the one row that crosses at the bend itself belongs to neither
     assert len(np.unique(j[skew][near_bend])) <= 2
+
+
+@pytest.mark.parametrize("rows_on_the_edge", [True, False])
+def test_flat_wing_skew_spar_and_a_left_ribbon_straight_down(rows_on_the_edge):
+    """gamma = 0: rows from the left ribbon shear by psi, to 1e-6 degrees, those from the wing and on it not at all.
+
+    The ribbon goes straight over the edge at gamma = psi; the turn back to the vertical is psi.
+    """
+    y = np.array([-700.0, 2000.0])
+    mesh = wing_spar(lambda t: 0 * t, lambda t: SKEW * t, y, 2500, 900)
+    spacing = 40.0
+    seed_row = 30 if rows_on_the_edge else 29.5
+    net = meshdrape.drape(
+        mesh.mould(), meshdrape.Fabric(spacing), (seed_row * spacing, 0, 0), (0, 1, 0), weft_turn=-np.arctan(SKEW)
+    )
+    i, j = offsets(net)
+    # the ribbon runs down the vertical, its nodes one spacing apart
+    down = np.arange(1 if rows_on_the_edge else 0, 15)
+    ribbon = nodes_at(net, 0, int(np.ceil(seed_row)) + down)
+    depth = spacing * (down + (0 if rows_on_the_edge else 0.5))
+    assert ribbon == pytest.approx(np.stack([0 * depth, 0 * depth, -depth], axis=1), abs=1e-9)
+    position = net.node_position
+    corner = np.stack([position[a : a - 1 or None, b : b - 1 or None] for a in (0, 1) for b in (0, 1)])
+    on_wing = (corner[..., 2] > -1e-9).all(axis=0)
+    on_spar = (np.abs(corner[..., 0] - SKEW * corner[..., 1]) < 1e-6).all(axis=0)
+    first_i, first_j = i[:-1, :-1], j[:-1, :-1]
+    cells = np.degrees(meshdrape.measure(net).cell_shear)
+    assert np.abs(cells[on_wing & (first_j < seed_row - 1)]).max() < 1e-6
+    # the row of cells over the edge belongs to neither
+    from_ribbon = on_spar & (first_j >= 30)
+    from_wing = on_spar & (first_i >= 0) & (first_j < 29)
+    assert from_ribbon.sum() > 200
+    assert from_wing.sum() > 30
+    # an edge bent in its middle lacks 1 - cos(psi / 2) of a spacing: the columns beside the ribbon shear by that too
+    beside = ((first_i == 0) | (first_i == -1)) & (not rows_on_the_edge)
+    off = np.abs(np.abs(cells) + SKEW_PSI)
+    assert off[from_ribbon & ~beside].max() < 1e-6
+    assert off[from_ribbon].max() < np.degrees(1 - np.cos(np.arctan(SKEW) / 2)) + 1e-3
+    assert np.abs(cells[from_wing]).max() < 1e-6
 
 
 @pytest.mark.parametrize(("c", "seed", "direction"), [
