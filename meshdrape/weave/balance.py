@@ -82,4 +82,4 @@ def balance(measures: Measures) -> Balance:
         gaps = ~whole[rows, columns][::si, ::sj]
         quadrant[gaps.cumsum(axis=0).cumsum(axis=1) > 0] = np.nan
         predicted[rows, columns] = si * sj * quadrant[::si, ::sj]
-    return Balance(predicted, curvature.inside, measures)
+    return Balance(predicted, curvature.by_cell, measures)

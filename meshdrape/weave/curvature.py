@@ -35,13 +35,30 @@ class Curvature:
     beside_weft : (2, n_weft - 1)
         On each edge of the weft generator: the part towards larger i, then the other.
     seed : float
-        At the seed.
+        At the seed: in no cell, for it is a corner of four.
+    origin : (int, int)
+        Index of the seed node.
     """
 
     inside: FloatArray
     beside_warp: FloatArray
     beside_weft: FloatArray
     seed: float
+    origin: tuple[int, int]
+
+    @property
+    def by_cell(self) -> FloatArray:
+        """All that falls to each cell, (n_warp - 1, n_weft - 1): Gauss and Bonnet's interior angles less 2 pi."""
+        i0, j0 = self.origin
+        n_i, n_j = self.inside.shape
+        total = self.inside.copy()
+        for side, at in ((0, j0), (1, j0 - 1)):
+            if 0 <= at < n_j:
+                total[:, at] += self.beside_warp[side]
+        for side, at in ((0, i0), (1, i0 - 1)):
+            if 0 <= at < n_i:
+                total[at] += self.beside_weft[side]
+        return total
 
 
 def enclosed_curvature(net: Net) -> Curvature:
@@ -90,7 +107,7 @@ def enclosed_curvature(net: Net) -> Curvature:
             for (c, d), weight in ((left, share), (right, 1 - share)):
                 if 0 <= c < inside.shape[0] and 0 <= d < inside.shape[1]:
                     inside[c, d] += weight * part
-    return Curvature(inside, beside_warp, beside_weft, seed)
+    return Curvature(inside, beside_warp, beside_weft, seed, (i0, j0))
 
 
 def _crossings(net: Net) -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
