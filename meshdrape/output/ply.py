@@ -5,6 +5,7 @@ all have k entries. Doubles stay doubles and every property is kept, which the P
 usual mesh libraries do not do. The reader is in :mod:`meshdrape.output.ply_reader`.
 """
 
+import hashlib
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -76,10 +77,19 @@ class PlyWriter:
 
     def __init__(self, file: BinaryIO, elements: Sequence[Element], comments: Sequence[str] = ()) -> None:
         self._file = file
+        self._digest = hashlib.sha256()
         self._expected = [(element.name, element.count) for element in elements]
         header = "".join(f"comment {comment}\n" for comment in comments)
         header += "".join(element.header() for element in elements)
-        file.write(f"ply\nformat binary_little_endian 1.0\n{header}end_header\n".encode("ascii"))
+        self._put(f"ply\nformat binary_little_endian 1.0\n{header}end_header\n".encode("ascii"))
+
+    def _put(self, data: bytes | memoryview) -> None:
+        self._digest.update(data)
+        self._file.write(data)
+
+    def digest(self) -> bytes:
+        """Return the SHA-256 of all bytes written so far."""
+        return self._digest.digest()
 
     def write(self, name: str, rows: Rows) -> None:
         """Append rows, made by `Element.rows`, to the element called `name`.
@@ -95,7 +105,7 @@ class PlyWriter:
             msg = f"{len(rows)} rows of {name} do not fit where {self._expected[:1]} are expected"
             raise ValueError(msg)
         self._expected[0] = (name, self._expected[0][1] - len(rows))
-        self._file.write(rows.data)
+        self._put(rows.data)
 
     def check_complete(self) -> None:
         """Raise ValueError if rows that the header announces were not written."""
