@@ -101,7 +101,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("audit")
         progress.stage("writing")
         progress.step(0)
-        files = _write(net, measures, field, net_path, picture=not options.no_picture)
+        files = _write(net, measures, field, foretold, net_path, picture=not options.no_picture)
         clock.lap("files")
         command = shlex.join(["meshdrape", *arguments])
         summary = summarise(measures, field, audited, foretold, clock.stages(), command)
@@ -142,13 +142,13 @@ def _announce_compilation(quiet: bool) -> None:
         sys.stderr.write("meshdrape: compiling the kernels, once; this takes about half a minute\n")
 
 
-def _write(net: Any, measures: Any, field: Any, net_path: Path, picture: bool) -> list[Path]:
+def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, picture: bool) -> list[Path]:
     from meshdrape.output import draw_net, write_fibres_ply, write_mould_ply, write_ply
 
     mould_path, fibres_path, picture_path = (
         net_path.with_suffix(suffix) for suffix in (".mould.ply", ".fibres.ply", ".png")
     )
-    write_ply(net, net_path, measures)
+    write_ply(net, net_path, measures, foretold)
     write_mould_ply(field, mould_path, net.fabric.locking_angle)
     write_fibres_ply(net, fibres_path)
     written = [net_path, mould_path, fibres_path]

@@ -16,6 +16,7 @@ DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
 
 COMMANDS = {
     "drape": "lay a fabric on a mould and write the net",
+    "audit": "check a finished net again from its file alone",
     "inspect": "list the faces of a mould and check its mesh",
 }
 

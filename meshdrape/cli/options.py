@@ -52,6 +52,18 @@ def degrees(text: str) -> float:
     return math.radians(value)
 
 
+def positive(text: str) -> float:
+    """A number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        msg = f"{text!r} is not a number above 0"
+        raise argparse.ArgumentTypeError(msg)
+    return value
+
+
 def count(text: str) -> int:
     """A whole number from 1 on."""
     try:
