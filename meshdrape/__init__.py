@@ -14,12 +14,14 @@ if TYPE_CHECKING:
     from meshdrape.geodesic import geodesic_distance
     from meshdrape.mould import Mould, read_mould
     from meshdrape.output import read_net, write_ply
+    from meshdrape.study import Convergence, refine
     from meshdrape.weave import Audit, Fabric, Measures, Net, NodeStatus, audit, drape, measure
 
 __version__ = "0.1.0"
 
 _HOME = {
     "Audit": "weave",
+    "Convergence": "study",
     "Fabric": "weave",
     "Measures": "weave",
     "MeshdrapeError": "errors",
@@ -32,11 +34,13 @@ _HOME = {
     "measure": "weave",
     "read_mould": "mould",
     "read_net": "output",
+    "refine": "study",
     "write_ply": "output",
 }
 
 __all__ = [
     "Audit",
+    "Convergence",
     "Fabric",
     "Measures",
     "MeshdrapeError",
@@ -49,6 +53,7 @@ __all__ = [
     "measure",
     "read_mould",
     "read_net",
+    "refine",
     "write_ply",
 ]
 

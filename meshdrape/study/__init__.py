@@ -1,0 +1,5 @@
+"""Questions answered by draping many times."""
+
+from meshdrape.study.convergence import Convergence, refine
+
+__all__ = ["Convergence", "refine"]
