@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from meshdrape.geodesic import geodesic_distance
     from meshdrape.mould import Mould, read_mould
     from meshdrape.output import read_net, write_ply
-    from meshdrape.study import Convergence, refine
+    from meshdrape.study import Convergence, Forecast, forecast, refine
     from meshdrape.weave import Audit, Fabric, Measures, Net, NodeStatus, audit, drape, measure
 
 __version__ = "0.1.0"
@@ -23,6 +23,7 @@ _HOME = {
     "Audit": "weave",
     "Convergence": "study",
     "Fabric": "weave",
+    "Forecast": "study",
     "Measures": "weave",
     "MeshdrapeError": "errors",
     "Mould": "mould",
@@ -30,6 +31,7 @@ _HOME = {
     "NodeStatus": "weave",
     "audit": "weave",
     "drape": "weave",
+    "forecast": "study",
     "geodesic_distance": "geodesic",
     "measure": "weave",
     "read_mould": "mould",
@@ -42,6 +44,7 @@ __all__ = [
     "Audit",
     "Convergence",
     "Fabric",
+    "Forecast",
     "Measures",
     "MeshdrapeError",
     "Mould",
@@ -49,6 +52,7 @@ __all__ = [
     "NodeStatus",
     "audit",
     "drape",
+    "forecast",
     "geodesic_distance",
     "measure",
     "read_mould",

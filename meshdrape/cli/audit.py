@@ -118,7 +118,10 @@ def _report(stored: StoredNet, found: Recheck) -> str:
     edges = found.edges
     rows = [
         ("file", "as it was written" if stored.sealed else "changed after it was written"),
-        ("nodes", f"{found.n_nodes:,} on the mould to {found.off_mould:.1e} of a spacing, {found.n_off_mould:,} beyond"),
+        (
+            "nodes",
+            f"{found.n_nodes:,} on the mould to {found.off_mould:.1e} of a spacing, {found.n_off_mould:,} beyond",
+        ),
         ("generators", f"straightest to {found.off_generator:.1e} of a spacing"),
         ("edges", f"{found.n_edges:,} on the mould, {found.n_straight:,} off the generators straight and one spacing"),
         ("", f"long; {found.n_unchecked:,} with an end off the mould not checked"),

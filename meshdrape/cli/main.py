@@ -49,19 +49,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         130 interrupted.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    parser = _Parser(prog="meshdrape", description="Drape woven cloth over CAD and mesh moulds.")
-    parser.add_argument("--version", action="version", version=f"meshdrape {__version__}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", dest="command", required=True)
-    named = next((word for word in arguments if word in COMMANDS), None)
-    modules = {}
-    for name, does in COMMANDS.items():
-        command = commands.add_parser(name, help=does, description=does[0].upper() + does[1:] + ".")
-        if name == named:
-            modules[name] = importlib.import_module(f"meshdrape.cli.{name}")
-            modules[name].add_arguments(command)
     try:
-        options = parser.parse_args(arguments)
-        return int(modules[options.command].run(options, arguments))
+        return _run(arguments)
     except SystemExit as stop:
         return int(stop.code or 0)
     except MeshdrapeError as error:
@@ -72,6 +61,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         sys.stderr.write("meshdrape: interrupted; no file was left half written\n")
         return INTERRUPTED
+
+
+def _run(arguments: list[str]) -> int:
+    """Import the command that is named, and run it."""
+    parser = _Parser(prog="meshdrape", description="Drape woven cloth over CAD and mesh moulds.")
+    parser.add_argument("--version", action="version", version=f"meshdrape {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", dest="command", required=True)
+    named = next((word for word in arguments if word in COMMANDS), None)
+    modules = {}
+    for name, does in COMMANDS.items():
+        command = commands.add_parser(name, help=does, description=does[0].upper() + does[1:] + ".")
+        if name == named:
+            modules[name] = importlib.import_module(f"meshdrape.cli.{name}")
+            modules[name].add_arguments(command)
+    options = parser.parse_args(arguments)
+    return int(modules[options.command].run(options, arguments))
 
 
 if __name__ == "__main__":

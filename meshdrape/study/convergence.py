@@ -67,6 +67,19 @@ class Convergence:
     error_bar: float
     spacing_error: float
 
+    def facts(self) -> dict[str, Any]:
+        """All of it in plain types, angles in degrees (``_deg``)."""
+        return {
+            "triangles": list(self.triangles),
+            "angle_tolerance_deg": [math.degrees(value) for value in self.angle_tolerance],
+            "chord_tolerance_mm": list(self.chord_tolerance),
+            "max_shear_deg": [math.degrees(value) for value in self.max_shear],
+            "order": self.order,
+            "mesh_noise_deg": math.degrees(self.noise),
+            "error_bar_deg": math.degrees(self.error_bar),
+            "spacing_error_deg": math.degrees(self.spacing_error),
+        }
+
 
 def refine(
     mould: Mould,
@@ -102,12 +115,7 @@ def refine(
     from cell to cell and facets err at random, so two maxima may agree by chance: the bar is never below the mesh's own
     noise.
     """
-    if mould.source is None or mould.angle_tolerance is None or mould.chord_tolerance is None:
-        msg = (
-            f"{mould.source or 'the mould'} is a mesh, its own truth: there is nothing finer to compare it with; "
-            f"refine the STEP, BREP or CadQuery script it was made from"
-        )
-        raise MouldError(msg)
+    require_refinable(mould)
     if net is None:
         net = drape(mould, fabric, seed, direction, extent=extent, threads=threads)
     nets = [net]
@@ -119,9 +127,7 @@ def refine(
     maxima = [_max_shear(measure(each)) for each in nets]
     noise = mesh_noise(net.surface.mould_part)
     order, error = extrapolated(*maxima)
-    twice = Fabric(
-        (2 * fabric.warp_spacing, 2 * fabric.weft_spacing), fabric.initial_angle, fabric.locking_angle
-    )
+    twice = Fabric((2 * fabric.warp_spacing, 2 * fabric.weft_spacing), fabric.initial_angle, fabric.locking_angle)
     wide = drape(mould, twice, net.seed, net.direction, extent=extent, threads=threads)
     moulds = [each.mould for each in nets]
     return Convergence(
@@ -134,6 +140,16 @@ def refine(
         error_bar=max(error, noise, ROUND_OFF),
         spacing_error=SAFETY * abs(_max_shear(measure(wide)) - maxima[-1]),
     )
+
+
+def require_refinable(mould: Mould) -> None:
+    """Raise MouldError if a mould has no file of exact faces behind it."""
+    if mould.source is None or mould.angle_tolerance is None:
+        msg = (
+            f"{mould.source or 'the mould'} is a mesh, its own truth: there is nothing finer to compare it with; "
+            f"refine the STEP, BREP or CadQuery script it was made from"
+        )
+        raise MouldError(msg)
 
 
 def extrapolated(coarse: float, middle: float, fine: float, ratio: float = RATIO) -> tuple[float | None, float]:

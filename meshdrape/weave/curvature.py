@@ -137,9 +137,7 @@ def _seed_vertex(net: Net) -> int:
     return int(surface.faces[start.face[0], corner]) if weight[corner] >= AT_VERTEX else -1
 
 
-def _vertex_cells(
-    surface: Surface, nearest: FloatArray, cell: IntArray, on_fibre: NDArray[np.bool_]
-) -> IntArray:
+def _vertex_cells(surface: Surface, nearest: FloatArray, cell: IntArray, on_fibre: NDArray[np.bool_]) -> IntArray:
     """Cell (i, j) each vertex lies in, (n, 2); -1 where it lies on a fibre or under no cloth."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -160,4 +158,4 @@ def _vertex_cells(
     found[first[0]] = votes[order][first[1], 1:]
     home = found[region]
     home[on_fibre] = -1
-    return home
+    return np.asarray(home)

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 ENGINES = ("fast", "libigl")
+# Digits that a coordinate has, relative to the mould's size.
+ROUND_OFF = 1e-16
 
 
 def drape(
@@ -69,7 +71,7 @@ def drape(
     StartError
         If the seed lies farther than one spacing from the mould, or the direction is zero or along the normal.
     FabricError
-        If the spacing is larger than the mould.
+        If the spacing is larger than the mould, or below the round-off of its coordinates.
     NetError
         If the net would not fit in the memory.
     """
@@ -81,6 +83,12 @@ def drape(
     size = mould.surface.diagonal
     if longest > size:
         msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
+        raise FabricError(msg)
+    shortest = min(fabric.warp_spacing, fabric.weft_spacing)
+    if shortest < ROUND_OFF * size:
+        msg = (
+            f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"
+        )
         raise FabricError(msg)
     extent = _checked_extent(extent)
     whole = mould.surface

@@ -30,17 +30,28 @@ if TYPE_CHECKING:
         """What a net's file says of its nodes and of where it was begun."""
 
         @property
-        def fabric(self) -> Fabric: ...
+        def fabric(self) -> Fabric:
+            """The fabric."""
+
         @property
-        def seed(self) -> FloatArray: ...
+        def seed(self) -> FloatArray:
+            """(3,) mm, on the mould."""
+
         @property
-        def direction(self) -> FloatArray: ...
+        def direction(self) -> FloatArray:
+            """(3,) unit warp direction at the seed."""
+
         @property
-        def seed_index(self) -> tuple[int, int]: ...
+        def seed_index(self) -> tuple[int, int]:
+            """(i, j) of the seed node."""
+
         @property
-        def node_position(self) -> FloatArray: ...
+        def node_position(self) -> FloatArray:
+            """(n_warp, n_weft, 3) mm, NaN where there is no node."""
+
         @property
-        def node_status(self) -> NDArray[np.uint8]: ...
+        def node_status(self) -> NDArray[np.uint8]:
+            """(n_warp, n_weft) NodeStatus."""
 
 
 FloatArray = NDArray[np.float64]

@@ -26,9 +26,12 @@ if TYPE_CHECKING:
         """What a net's file says of its cells too."""
 
         @property
-        def cell_shear(self) -> FloatArray: ...
+        def cell_shear(self) -> FloatArray:
+            """(n_warp - 1, n_weft - 1) rad."""
+
         @property
-        def predicted_shear(self) -> FloatArray: ...
+        def predicted_shear(self) -> FloatArray:
+            """Likewise, by the curvature balance."""
 
 
 FloatArray = NDArray[np.float64]
@@ -233,7 +236,7 @@ def _behind_crooked(rebuilt: Rebuilt) -> NDArray[np.bool_]:
     for rows in (behind[i0:], behind[:i0][::-1]):
         for quadrant in (rows[:, j0:], rows[:, :j0][:, ::-1]):
             quadrant[:] = np.logical_or.accumulate(np.logical_or.accumulate(quadrant, axis=0), axis=1)
-    return behind
+    return np.asarray(behind)
 
 
 def _edge_failure(audited: Audit, origin: tuple[int, int]) -> str:
