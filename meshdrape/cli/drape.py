@@ -156,6 +156,12 @@ def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, p
     return written
 
 
+def _balance_text(summary: dict[str, Any]) -> str:
+    at = summary["balance_residual_at"]
+    where = "" if at is None else f", worst at ({', '.join(f'{v:.1f}' for v in at)})"
+    return f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg{where}"
+
+
 def _report(summary: dict[str, Any], files: list[Path]) -> str:
     """The summary for people."""
     mould, fabric, cloth, checked = summary["mould"], summary["fabric"], summary["cloth_mm"], summary["audit"]
@@ -184,7 +190,7 @@ def _report(summary: dict[str, Any], files: list[Path]) -> str:
             f"{summary['over_locking_percent']:.2f} % of the area above {fabric['locking_angle_deg']:g} deg",
         ),
         ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg"),
-        ("balance", f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg"),
+        ("balance", _balance_text(summary)),
         ("audit", f"{checked['n_edges']:,} edges by libigl, largest relative error {error:.1e}"),
         ("time", ", ".join(f"{stage} {value:.2f} s" for stage, value in summary["seconds"].items())),
     ]

@@ -50,7 +50,7 @@ def _left_angle(mesh, face, k, bx, by, out_face, out_k, ox, oy):
     """Angle at a vertex on the left of a path: counter-clockwise from the way out to the way back (bx, by)."""
     sector, ex, ey = corner_angle(mesh, out_face, out_k)
     begin = math.atan2(ex * oy - ey * ox, ex * ox + ey * oy)
-    last, ex, ey = corner_angle(mesh, face, k)
+    _, ex, ey = corner_angle(mesh, face, k)
     end = math.atan2(ex * by - ey * bx, ex * bx + ey * by)
     total = -begin
     f = out_face

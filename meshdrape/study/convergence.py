@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 # Both tolerances from one tessellation to the next.
 RATIO = 2.0
-# Observed orders that may be believed, in powers of the tolerances. An error no facet can make fall faster than with its
-# own width squared, which is the chord tolerance: a larger order is luck, and the first is taken.
+# Observed orders that may be believed, in powers of the tolerances. No error of facets falls faster than their width
+# squared, which is the chord tolerance: a larger order is luck, and the first is taken.
 LOWEST_ORDER, HIGHEST_ORDER, SUREST_ORDER = 0.4, 2.2, 1.0
 # Safety factor of a bar from three grids of believable order; of the spread where the order is not.
 # (Roache, Perspective: A method for uniform reporting of grid refinement studies, J. Fluids Eng. 116, 1994.)
@@ -111,9 +111,9 @@ def refine(
     Notes
     -----
     Where the three maxima fall monotonically with a believable order p, the error of the finest is that of Richardson's
-    extrapolation, |f3 - f2| / (2^p - 1) with p at most 1, times 1.25; elsewhere one and a half times their spread. The maximum wanders
-    from cell to cell and facets err at random, so two maxima may agree by chance: the bar is never below the mesh's own
-    noise.
+    extrapolation, |f3 - f2| / (2^p - 1) with p at most 1, times 1.25; elsewhere one and a half times their spread. The
+    maximum wanders from cell to cell and facets err at random, so two maxima may agree by chance: the bar is never
+    below the mesh's own noise.
     """
     require_refinable(mould)
     if net is None:

@@ -42,12 +42,27 @@ class Balance:
         """Measured less predicted shear, rad; NaN where there is no prediction."""
         return np.asarray(self.measures.cell_shear - self.predicted)
 
+    @cached_property
+    def worst_cell(self) -> tuple[int, int] | None:
+        """(i, j) of the cell that touches the mould with the largest absolute residual; None if there is none."""
+        off = np.where(self.measures.cell_touches_mould, np.abs(self.residual), np.nan)
+        if not np.isfinite(off).any():
+            return None
+        i, j = np.unravel_index(int(np.nanargmax(off)), off.shape)
+        return int(i), int(j)
+
     @property
     def worst(self) -> float:
         """Largest absolute residual of the cells that touch the mould, rad; 0 if there is none."""
-        off = np.abs(self.residual[self.measures.cell_touches_mould])
-        off = off[np.isfinite(off)]
-        return float(off.max()) if len(off) else 0.0
+        return 0.0 if self.worst_cell is None else float(abs(self.residual[self.worst_cell]))
+
+    @property
+    def worst_position(self) -> FloatArray | None:
+        """Middle of that cell, (3,) mm."""
+        if self.worst_cell is None:
+            return None
+        i, j = self.worst_cell
+        return np.asarray(self.measures.net.positions(i, i + 2)[:, j : j + 2].reshape(-1, 3).mean(axis=0))
 
 
 def balance(measures: Measures) -> Balance:

@@ -245,7 +245,7 @@ def test_inspect(capfd, monkeypatch, moulds, case):
         ("drape top.stl -o", ("--output",)),
         ("drape top.stl top.obj -o OUT/net.ply --spacing 10", ("top.obj",)),
         ("inspect", ("MOULD",)),
-        ("inspect top.stl --spacing 10", ("--spacing",)),
+        ("inspect top.stl --heal", ("--heal",)),
         ("drape top.stl -o OUT/nowhere/net.ply --spacing 10", ("nowhere", "does not exist")),
         ("drape top.stl -o OUT --spacing 10", ("it is a folder",)),
         ("drape top.stl -o /dev/null --spacing 10", ("/dev/null", "not a regular file")),
