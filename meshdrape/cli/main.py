@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from meshdrape import __version__
+from meshdrape.cli import interrupt
 from meshdrape.errors import MeshdrapeError
 
 DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
@@ -49,18 +50,28 @@ def main(argv: Sequence[str] | None = None) -> int:
         130 interrupted.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    try:
-        return _run(arguments)
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    except MeshdrapeError as error:
-        sys.stderr.write(f"meshdrape: {' '.join(str(error).split())}\n")
-        return BAD_INPUT
-    except BrokenPipeError:
-        return DONE
-    except KeyboardInterrupt:
-        sys.stderr.write("meshdrape: interrupted; no file was left half written\n")
-        return INTERRUPTED
+    with interrupt.Remembered():
+        try:
+            return _run(arguments)
+        except SystemExit as stop:
+            return int(stop.code or 0)
+        except BrokenPipeError:
+            return DONE
+        except KeyboardInterrupt:
+            return _interrupted()
+        except Exception as error:
+            # a library interrupted while it is imported raises something of its own
+            if interrupt.seen():
+                return _interrupted()
+            if not isinstance(error, MeshdrapeError):
+                raise
+            sys.stderr.write(f"meshdrape: {' '.join(str(error).split())}\n")
+            return BAD_INPUT
+
+
+def _interrupted() -> int:
+    sys.stderr.write("meshdrape: interrupted; no file was left half written\n")
+    return INTERRUPTED
 
 
 def _run(arguments: list[str]) -> int:
