@@ -45,10 +45,12 @@ class Balance:
     @cached_property
     def worst_cell(self) -> tuple[int, int] | None:
         """(i, j) of the cell that touches the mould with the largest absolute residual; None if there is none."""
-        off = np.where(self.measures.cell_touches_mould, np.abs(self.residual), np.nan)
-        if not np.isfinite(off).any():
+        off = np.abs(self.residual)
+        off[~self.measures.cell_touches_mould] = -1.0
+        off[np.isnan(off)] = -1.0
+        if not off.size or off.max() < 0:
             return None
-        i, j = np.unravel_index(int(np.nanargmax(off)), off.shape)
+        i, j = np.unravel_index(int(np.argmax(off)), off.shape)
         return int(i), int(j)
 
     @property
@@ -95,6 +97,6 @@ def balance(measures: Measures) -> Balance:
         total = held.cumsum(axis=0).cumsum(axis=1)
         quadrant = 0.25 * (total[1:, 1:] + total[:-1, 1:] + total[1:, :-1] + total[:-1, :-1])
         gaps = ~whole[rows, columns][::si, ::sj]
-        quadrant[gaps.cumsum(axis=0).cumsum(axis=1) > 0] = np.nan
+        quadrant[np.logical_or.accumulate(np.logical_or.accumulate(gaps, axis=0), axis=1)] = np.nan
         predicted[rows, columns] = si * sj * quadrant[::si, ::sj]
     return Balance(predicted, curvature.by_cell, measures)
