@@ -12,6 +12,8 @@ IntArray = NDArray[np.int64]
 def nearest_faces(vertices: FloatArray, faces: IntArray, points: FloatArray) -> tuple[IntArray, FloatArray]:
     """The face nearest to each point and its distance: (k,) int64 and (k,) mm. O(k log n_faces).
 
+    A point that is not finite is infinitely far from face 0.
+
     Parameters
     ----------
     vertices : (n, 3), faces : (m, 3), points : (k, 3)
@@ -20,8 +22,10 @@ def nearest_faces(vertices: FloatArray, faces: IntArray, points: FloatArray) -> 
         return np.zeros(len(points), dtype=np.int64), np.full(len(points), np.inf)
     import igl
 
+    known = np.asarray(np.isfinite(points).all(axis=1))
     _, face, foot = igl.point_mesh_squared_distance(
-        np.ascontiguousarray(points), np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
+        np.where(known[:, None], points, 0.0), np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
     )
     # its squared distance loses half of the digits
-    return np.asarray(face, dtype=np.int64), np.asarray(np.linalg.norm(foot - points, axis=1))
+    distance = np.where(known, np.linalg.norm(foot - points, axis=1), np.inf)
+    return np.where(known, face, 0).astype(np.int64), distance

@@ -201,7 +201,7 @@ def read_net(path: str | os.PathLike[str]) -> StoredNet:
     ply = read_ply(path)
     try:
         return _stored_net(Path(path), ply)
-    except (KeyError, ValueError, IndexError, TypeError) as error:
+    except (KeyError, ValueError, IndexError, TypeError, AttributeError, OverflowError) as error:
         msg = f"{path} is not a net that meshdrape wrote ({_reason(error)}); give the NET.ply of a drape"
         raise NetError(msg) from None
 
@@ -312,6 +312,10 @@ def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
     }
 
 
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
 def _sealed(path: Path, ply: PlyFile) -> bool:
     """Tell whether the file's last bytes are the SHA-256 of all before them."""
     seal = ply.elements["seal"]
@@ -327,6 +331,14 @@ def _sealed(path: Path, ply: PlyFile) -> bool:
 def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     made = from_comments(ply.comments)
     n_warp, n_weft = made["nodes"]
+    seed, direction = (np.array(made[name], dtype=np.float64) for name in ("seed", "direction"))
+    origin = (int(made["seed_index"][0]), int(made["seed_index"][1]))
+    if not (seed.shape == direction.shape == (3,) and np.isfinite([seed, direction]).all() and direction.any()):
+        msg = "its seed or direction is none"
+        raise ValueError(msg)
+    if not (0 <= origin[0] < n_warp and 0 <= origin[1] < n_weft):
+        msg = f"its seed has the index {origin} in {n_warp} x {n_weft} nodes"
+        raise ValueError(msg)
     node, cell, gap = (ply.elements[name] for name in ("vertex", "face", "gap"))
     n_gaps = int(gap["length"].sum())
     if n_warp * n_weft != len(node) + n_gaps:
@@ -356,23 +368,23 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
             field[at] = np.radians(rows[name])
     return StoredNet(
         fabric=Fabric(tuple(made["spacing"]), made["initial_angle_rad"], made["locking_angle_rad"]),
-        seed=np.array(made["seed"], dtype=np.float64),
-        direction=np.array(made["direction"], dtype=np.float64),
-        seed_index=(int(made["seed_index"][0]), int(made["seed_index"][1])),
+        seed=seed,
+        direction=direction,
+        seed_index=origin,
         node_position=arrays[0],
         node_status=status,
         warp_direction=arrays[1],
         weft_direction=arrays[2],
         cell_shear=shear,
         mould_file=None if made["mould_file"] is None else path.parent / made["mould_file"],
-        mould_sha256=made["mould_sha256"],
-        mould_unit=made["mould_unit"],
-        mould_faces=tuple(made["mould_faces"]),
+        mould_sha256=None if made["mould_sha256"] is None else str(made["mould_sha256"]),
+        mould_unit=str(made["mould_unit"]),
+        mould_faces=tuple(int(number) for number in made["mould_faces"]),
         mould_parameters=tuple(made["mould_parameters"].items()),
         mould_healed=bool(made["mould_healed"]),
         mould_turned=bool(made["mould_turned"]),
-        chord_tolerance=made["chord_tolerance"],
-        angle_tolerance=made["angle_tolerance_rad"],
+        chord_tolerance=_number(made["chord_tolerance"]),
+        angle_tolerance=_number(made["angle_tolerance_rad"]),
         predicted_shear=foretold[0],
         balance_residual=foretold[1],
         cell_defect=foretold[2],

@@ -149,7 +149,7 @@ def rebuild(mould: Mould, stored: StoredNodes, threads: int = 1) -> Rebuilt:
 def _place(
     surface: Surface, n_mould_faces: int, stored: StoredNodes, lattice: Lattice, off_surface: FloatArray
 ) -> None:
-    """Give every node off the generators its face and its place there."""
+    """Give every node that was not traced its face and its place there."""
     i0, j0 = (int(v) for v in stored.seed_index)
     frame = surface.unfolding.frame
     for status, first, faces in (
@@ -160,7 +160,8 @@ def _place(
         position = stored.node_position[i, j]
         face, distance = nearest_faces(surface.vertices, faces, position)
         off_surface[i, j] = distance
-        other = (i != i0) & (j != j0)
+        # a generator's node that was traced keeps its place, to which its directions belong
+        other = ((i != i0) & (j != j0)) | (lattice.status[i, j] > NodeStatus.OFF_MOULD)
         i, j, position, face = i[other], j[other], position[other], face[other] + first
         away = position - frame[face, :3]
         lattice.face[i, j] = face

@@ -204,3 +204,40 @@ def test_a_closed_mould(capfd, tmp_path):
     facts = audited(capfd, net, "--edges", "50")
     assert facts["holds"]
     assert facts["edges_off_mould_unchecked"] == 0
+
+
+def test_noise_in_the_file_never_passes_and_never_breaks(capfd, folder):
+    """Bytes changed at random, and the file sealed anew: one line of error, or a net that does not hold."""
+    net = folder / "net.ply"
+    whole = net.read_bytes()
+    header = whole.index(b"end_header")
+    random = np.random.default_rng(3)
+    codes = []
+    for trial in range(60):
+        data = bytearray(whole)
+        # half of them in the header, where mould, fabric and seed stand
+        low, high = (0, header) if trial % 2 else (header, len(whole) - 33)
+        for at in random.integers(low, high, 3 if trial % 2 else 40):
+            data[at] = random.integers(256)
+        data[-32:] = hashlib.sha256(data[:-33]).digest()
+        net.write_bytes(data)
+        outcome = run(capfd, "audit", net, "--edges", "3")
+        assert outcome.code in (0, 2, 3)
+        assert outcome.err.count("\n") == (outcome.code == 2)
+        assert "Traceback" not in outcome.err
+        codes.append(outcome.code)
+        # colours, versions and the like are not the net; everything else is
+        if outcome.code == 0:
+            assert trial % 2
+    assert {2, 3} <= set(codes)
+
+
+def test_a_fibre_and_no_more(capfd, tmp_path):
+    """A net of a single row has no cells to check."""
+    (tmp_path / "plate.obj").write_bytes(obj(plate()))
+    net = tmp_path / "net.ply"
+    run(capfd, "drape", tmp_path / "plate.obj", "-o", net, "--spacing", "9", "--extent", "0,0,40,40",
+        "--quiet", "--no-picture")  # fmt: skip
+    facts = audited(capfd, net)
+    assert facts["holds"]
+    assert (facts["nodes"], facts["cells_checked"]) == (9, 0)
