@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from meshdrape.weave.audit import WARP, Audit, audit_edges, count_edges, sample_edges
 from meshdrape.weave.balance import Balance, balance
+from meshdrape.weave.generators import BORDER_SLACK
 from meshdrape.weave.measures import Measures, measure
 from meshdrape.weave.rebuild import STRAIGHT, Rebuilt, rebuild
 from meshdrape.weave.status import NodeStatus
@@ -36,9 +37,9 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-# A node this far off the mould, in spacings, lies elsewhere; so does one of a generator off the path traced anew, for
-# the round-off of a direction grows along the fibre.
-OFF, OFF_GENERATOR = 1e-9, 1e-7
+# A node this far off the mould, in spacings, lies elsewhere: so near to the border it still counts as on it. So does a
+# generator's node off the path traced anew, for the round-off of a direction grows along the fibre.
+OFF, OFF_GENERATOR = 1.01 * BORDER_SLACK, 1e-7
 # An edge this far from the shortest distance, relative, is not one: a second route round a vertex is nearer than that.
 EDGE = 1e-7
 # Shear that differs by this, rad, is not that of these nodes.
