@@ -14,13 +14,16 @@ if TYPE_CHECKING:
     from meshdrape.geodesic import geodesic_distance
     from meshdrape.mould import Mould, read_mould
     from meshdrape.output import read_net, write_ply
+    from meshdrape.study import Convergence, Forecast, forecast, refine
     from meshdrape.weave import Audit, Fabric, Measures, Net, NodeStatus, audit, drape, measure
 
 __version__ = "0.1.0"
 
 _HOME = {
     "Audit": "weave",
+    "Convergence": "study",
     "Fabric": "weave",
+    "Forecast": "study",
     "Measures": "weave",
     "MeshdrapeError": "errors",
     "Mould": "mould",
@@ -28,16 +31,20 @@ _HOME = {
     "NodeStatus": "weave",
     "audit": "weave",
     "drape": "weave",
+    "forecast": "study",
     "geodesic_distance": "geodesic",
     "measure": "weave",
     "read_mould": "mould",
     "read_net": "output",
+    "refine": "study",
     "write_ply": "output",
 }
 
 __all__ = [
     "Audit",
+    "Convergence",
     "Fabric",
+    "Forecast",
     "Measures",
     "MeshdrapeError",
     "Mould",
@@ -45,10 +52,12 @@ __all__ = [
     "NodeStatus",
     "audit",
     "drape",
+    "forecast",
     "geodesic_distance",
     "measure",
     "read_mould",
     "read_net",
+    "refine",
     "write_ply",
 ]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import shlex
 import sys
 import time
@@ -11,11 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.cli.main import DONE, FABRIC_MISSING
-from meshdrape.cli.options import add_mould_options, count, degrees, numbers, read_mould, read_path, spacing
+from meshdrape.cli.options import (
+    add_cloth_options,
+    add_mould_options,
+    add_start_options,
+    axis,
+    count,
+    degrees,
+    read_mould,
+    read_path,
+)
 from meshdrape.cli.progress import Progress
 
-POINT = "a point X,Y,Z in mm"
-VECTOR = "a direction X,Y,Z"
 # libigl's audit may take this long, s, and stops at this many edges.
 AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
 
@@ -24,23 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_mould_options(parser)
     parser.add_argument("-o", "--output", required=True, metavar="NET.ply", help="the net; its companions go beside it")
-    cloth = parser.add_argument_group("the cloth")
-    cloth.add_argument("--spacing", type=spacing, required=True, metavar="MM", help="node to node: 5, or WARP,WEFT")
-    cloth.add_argument("--initial-angle", type=degrees, default=math.pi / 2, metavar="DEG", help="warp to weft (90)")
-    cloth.add_argument(
-        "--locking-angle",
-        type=degrees,
-        default=math.radians(7),
-        metavar="DEG",
-        help="shear at which it locks (7)",
-    )
-    cloth.add_argument(
-        "--extent", type=numbers(4, "four lengths in mm: WARP-,WARP+,WEFT-,WEFT+"), metavar="A,B,C,D",
-        help="cloth from the seed: back and forth along warp, then weft",
-    )  # fmt: skip
-    start = parser.add_argument_group("the start")
-    start.add_argument("--seed", type=numbers(3, POINT), metavar="X,Y,Z", help="default: near the middle")
-    start.add_argument("--direction", type=numbers(3, VECTOR), metavar="X,Y,Z", help="warp; default: the long way")
+    add_cloth_options(parser, spacing_required=True)
+    start = add_start_options(parser)
     for name in ("warp", "weft"):
         start.add_argument(
             f"--{name}-turn-deg", type=degrees, metavar="DEG",
@@ -56,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     out = parser.add_argument_group("the results")
     out.add_argument(
         "--reference",
-        type=numbers(3, VECTOR),
+        type=axis,
         default=(1.0, 0.0, 0.0),
         metavar="X,Y,Z",
         help="zero of fibre angles (x)",
@@ -64,6 +55,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     out.add_argument("--json", action="store_true", help="print the summary as JSON")
     out.add_argument("--quiet", action="store_true", help="print nothing but errors")
     out.add_argument("--no-picture", action="store_true", help="do not draw NET.png")
+    out.add_argument(
+        "--refine", action="store_true", help="drape on two coarser tessellations too: an error bar for the shear"
+    )
     out.add_argument("--engine", choices=("fast", "libigl"), default="fast", help="libigl: every node by it; slow")
     out.add_argument("--threads", type=count, metavar="N", help="default: all cores; the net does not depend on it")
 
@@ -83,6 +77,10 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         mould = read_mould(options)
         if options.flip_normal:
             mould = mould.flipped()
+        if options.refine:
+            from meshdrape.study.convergence import require_refinable
+
+            require_refinable(mould)
         clock.lap("mould")
         _announce_compilation(options.quiet)
 
@@ -115,13 +113,22 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("measures")
         audited = audit(net, AUDIT_EDGES, seconds=AUDIT_SECONDS)
         clock.lap("audit")
+        refined = None
+        if options.refine:
+            from meshdrape.study import refine
+
+            progress.stage("draping on coarser facets")
+            refined = refine(mould, fabric, extent=options.extent, net=net, threads=options.threads)
+            clock.lap("refinement")
         progress.stage("writing")
         progress.step(0)
-        files = _write(net, measures, field, net_path, picture=not options.no_picture)
+        files = _write(net, measures, field, foretold, net_path, picture=not options.no_picture)
         clock.lap("files")
         command = shlex.join(["meshdrape", *arguments])
         summary = summarise(measures, field, audited, foretold, clock.stages(), command)
 
+        if refined is not None:
+            summary["refinement"] = refined.facts()
         from meshdrape.output import json_text, write_json
 
         json_path = net_path.with_suffix(".json")
@@ -158,13 +165,13 @@ def _announce_compilation(quiet: bool) -> None:
         sys.stderr.write("meshdrape: compiling the kernels, once; this takes about half a minute\n")
 
 
-def _write(net: Any, measures: Any, field: Any, net_path: Path, picture: bool) -> list[Path]:
+def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, picture: bool) -> list[Path]:
     from meshdrape.output import draw_net, write_fibres_ply, write_mould_ply, write_ply
 
     mould_path, fibres_path, picture_path = (
         net_path.with_suffix(suffix) for suffix in (".mould.ply", ".fibres.ply", ".png")
     )
-    write_ply(net, net_path, measures)
+    write_ply(net, net_path, measures, foretold)
     write_mould_ply(field, mould_path, net.fabric.locking_angle)
     write_fibres_ply(net, fibres_path)
     written = [net_path, mould_path, fibres_path]
@@ -172,6 +179,12 @@ def _write(net: Any, measures: Any, field: Any, net_path: Path, picture: bool) -
         draw_net(net, measures, picture_path)
         written.append(picture_path)
     return written
+
+
+def _balance_text(summary: dict[str, Any]) -> str:
+    at = summary["balance_residual_at"]
+    where = "" if at is None else f", worst at ({', '.join(f'{v:.1f}' for v in at)})"
+    return f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg{where}"
 
 
 def _report(summary: dict[str, Any], files: list[Path]) -> str:
@@ -202,14 +215,25 @@ def _report(summary: dict[str, Any], files: list[Path]) -> str:
             f"{summary['over_locking_percent']:.2f} % of the area above {fabric['locking_angle_deg']:g} deg",
         ),
         ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg"),
-        ("balance", f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg"),
+        ("balance", _balance_text(summary)),
         ("audit", f"{checked['n_edges']:,} edges by libigl, largest relative error {error:.1e}"),
         ("time", ", ".join(f"{stage} {value:.2f} s" for stage, value in summary["seconds"].items())),
     ]
+    if "refinement" in summary:
+        bar = summary["refinement"]
+        tried = " / ".join(f"{value:.3f}" for value in bar["max_shear_deg"])
+        rows.insert(
+            6,
+            (
+                "refined",
+                f"max shear +- {bar['error_bar_deg']:.2g} deg ({tried} on {bar['triangles'][0]:,} to "
+                f"{bar['triangles'][2]:,} triangles); +- {bar['spacing_error_deg']:.2g} deg for the spacing",
+            ),
+        )
     if summary["warp_angle_deg"]:
         angle = summary["warp_angle_deg"]
         rows.insert(
-            7,
+            next(n for n, (name, _) in enumerate(rows) if name == "mesh noise"),
             (
                 "warp angle",
                 f"{angle['min']:.2f} to {angle['max']:.2f} deg from the reference, mean {angle['mean']:.2f}",

@@ -8,15 +8,31 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from meshdrape.cli.main import BAD_INPUT, DONE
-from meshdrape.cli.options import add_reading_options, reading
+from meshdrape.cli.options import (
+    add_cloth_options,
+    add_faces_option,
+    add_reading_options,
+    add_start_options,
+    read_mould,
+    reading,
+)
 
 if TYPE_CHECKING:
     from meshdrape.mould.inspect import Inspection
 
 
+# Any of these asks for a forecast.
+START = ("seed", "direction", "spacing", "extent")
+# Spacing of the cloth where none is given: the mould's diagonal holds so many.
+SPACINGS = 300
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_reading_options(parser)
+    group = add_reading_options(parser)
+    add_faces_option(group)
+    add_cloth_options(parser, spacing_required=False)
+    add_start_options(parser)
     parser.add_argument("--json", action="store_true", help="print as JSON")
 
 
@@ -27,6 +43,8 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
     found = inspect_mould(options.mould, **reading(options))
     facts = _facts(found)
+    if not found.faults and any(getattr(options, name) is not None for name in START):
+        facts |= _forecast(options, found)
     if options.json:
         from meshdrape.output import json_text
 
@@ -37,6 +55,37 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         sys.stderr.write(f"meshdrape: {found.path} cannot be draped as it is: repair it with --heal, or in CAD\n")
         return BAD_INPUT
     return DONE
+
+
+def _forecast(options: argparse.Namespace, found: Inspection) -> dict[str, Any]:
+    """The shear that a start would need, and a warning where the cloth locks before."""
+    from meshdrape.study import forecast
+    from meshdrape.weave.fabric import Fabric
+
+    mould = found.mould
+    if options.faces is not None or found.closed or mould is None:
+        options.heal = False
+        mould = read_mould(options)
+    spacing = options.spacing or mould.surface.diagonal / SPACINGS
+    fabric = Fabric(spacing, options.initial_angle, options.locking_angle)
+    told = forecast(mould, fabric, options.seed, options.direction, options.extent)
+    shear, lock = math.degrees(told.max_shear), math.degrees(fabric.locking_angle)
+    warnings = []
+    if told.max_shear > fabric.locking_angle:
+        warnings.append(
+            f"this start needs about {shear:.1f} degrees of shear where the cloth locks at {lock:g}; try another seed "
+            f"or direction, or a smaller --extent"
+        )
+    return {
+        "forecast": {
+            "max_shear_deg": shear,
+            "max_shear_at": told.position.tolist(),
+            "complete": told.complete,
+            "locking_angle_deg": lock,
+            "seconds": told.seconds,
+        },
+        "warnings": warnings,
+    }
 
 
 def _facts(found: Inspection) -> dict[str, Any]:
@@ -76,6 +125,19 @@ def _facts(found: Inspection) -> dict[str, Any]:
     return facts
 
 
+def _forecast_lines(facts: dict[str, Any]) -> list[str]:
+    if "forecast" not in facts:
+        return []
+    told = facts["forecast"]
+    at = ", ".join(f"{v:.1f}" for v in told["max_shear_at"])
+    least = "about" if told["complete"] else "at least about"
+    lines = [
+        f"  forecast    {least} {told['max_shear_deg']:.1f} deg of shear, largest near ({at}), "
+        f"by the enclosed curvature ({1000 * told['seconds']:.0f} ms)"
+    ]
+    return lines + [f"  WARNING     {warning}" for warning in facts["warnings"]]
+
+
 def _report(facts: dict[str, Any]) -> str:
     lines = [facts["file"]]
     if "size_mm" in facts:
@@ -86,6 +148,7 @@ def _report(facts: dict[str, Any]) -> str:
             told += f" at {facts['angle_tolerance_deg']:g} deg and {facts['chord_tolerance_mm']:g} mm"
         lines.append(f"  triangles   {told}")
         lines.append(f"  mesh noise  {facts['mesh_noise_deg']:.3f} deg of shear")
+    lines += _forecast_lines(facts)
     lines += [f"  note        {note}" for note in facts["notes"]]
     lines += [
         f"  FAULT       {fault['count']} x {fault['kind']}, first at "

@@ -10,12 +10,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from meshdrape import __version__
+from meshdrape.cli import interrupt
 from meshdrape.errors import MeshdrapeError
 
 DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
 
 COMMANDS = {
     "drape": "lay a fabric on a mould and write the net",
+    "audit": "check a finished net again from its file alone",
     "inspect": "list the faces of a mould and check its mesh",
     "mould": "make a mould by one of the scripts that come with meshdrape",
 }
@@ -49,6 +51,32 @@ def main(argv: Sequence[str] | None = None) -> int:
         130 interrupted.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
+    with interrupt.Remembered():
+        try:
+            return _run(arguments)
+        except SystemExit as stop:
+            return int(stop.code or 0)
+        except BrokenPipeError:
+            return DONE
+        except KeyboardInterrupt:
+            return _interrupted()
+        except Exception as error:
+            # a library interrupted while it is imported raises something of its own
+            if interrupt.seen():
+                return _interrupted()
+            if not isinstance(error, MeshdrapeError):
+                raise
+            sys.stderr.write(f"meshdrape: {' '.join(str(error).split())}\n")
+            return BAD_INPUT
+
+
+def _interrupted() -> int:
+    sys.stderr.write("meshdrape: interrupted; no file was left half written\n")
+    return INTERRUPTED
+
+
+def _run(arguments: list[str]) -> int:
+    """Import the command that is named, and run it."""
     parser = _Parser(prog="meshdrape", description="Drape woven cloth over CAD and mesh moulds.")
     parser.add_argument("--version", action="version", version=f"meshdrape {__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", dest="command", required=True)
@@ -59,19 +87,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         if name == named:
             modules[name] = importlib.import_module(f"meshdrape.cli.{name}")
             modules[name].add_arguments(command)
-    try:
-        options = parser.parse_args(arguments)
-        return int(modules[options.command].run(options, arguments))
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    except MeshdrapeError as error:
-        sys.stderr.write(f"meshdrape: {' '.join(str(error).split())}\n")
-        return BAD_INPUT
-    except BrokenPipeError:
-        return DONE
-    except KeyboardInterrupt:
-        sys.stderr.write("meshdrape: interrupted; no file was left half written\n")
-        return INTERRUPTED
+    options = parser.parse_args(arguments)
+    return int(modules[options.command].run(options, arguments))
 
 
 if __name__ == "__main__":

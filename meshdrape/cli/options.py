@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from meshdrape.mould import Mould
 
 
+POINT = "a point X,Y,Z in mm"
+VECTOR = "a direction X,Y,Z"
+
+
 def numbers(count: int, what: str) -> Any:
     """A converter for exactly `count` finite numbers separated by commas."""
 
@@ -26,6 +30,15 @@ def numbers(count: int, what: str) -> Any:
         return values
 
     return convert
+
+
+def axis(text: str) -> tuple[float, ...]:
+    """A direction X,Y,Z that is not zero."""
+    values: tuple[float, ...] = numbers(3, VECTOR)(text)
+    if not any(values):
+        msg = f"{text!r} is no direction: its three numbers must not all be zero"
+        raise argparse.ArgumentTypeError(msg)
+    return values
 
 
 def spacing(text: str) -> float | tuple[float, float]:
@@ -50,6 +63,18 @@ def degrees(text: str) -> float:
         msg = f"{text!r} is not an angle in degrees"
         raise argparse.ArgumentTypeError(msg)
     return math.radians(value)
+
+
+def positive(text: str) -> float:
+    """A number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        msg = f"{text!r} is not a number above 0"
+        raise argparse.ArgumentTypeError(msg)
+    return value
 
 
 def count(text: str) -> int:
@@ -92,13 +117,46 @@ def add_parameters(group: argparse._ArgumentGroup) -> None:
     )
 
 
+def add_cloth_options(parser: argparse.ArgumentParser, *, spacing_required: bool) -> None:
+    """The fabric and how far it reaches."""
+    cloth = parser.add_argument_group("the cloth")
+    cloth.add_argument(
+        "--spacing", type=spacing, required=spacing_required, metavar="MM", help="node to node: 5, or WARP,WEFT"
+    )
+    cloth.add_argument("--initial-angle", type=degrees, default=math.pi / 2, metavar="DEG", help="warp to weft (90)")
+    cloth.add_argument(
+        "--locking-angle",
+        type=degrees,
+        default=math.radians(7),
+        metavar="DEG",
+        help="shear at which it locks (7)",
+    )
+    cloth.add_argument(
+        "--extent", type=numbers(4, "four lengths in mm: WARP-,WARP+,WEFT-,WEFT+"), metavar="A,B,C,D",
+        help="cloth from the seed: back and forth along warp, then weft",
+    )  # fmt: skip
+
+
+def add_start_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
+    """Where the cloth is begun."""
+    start = parser.add_argument_group("the start")
+    start.add_argument("--seed", type=numbers(3, POINT), metavar="X,Y,Z", help="default: near the middle")
+    start.add_argument("--direction", type=numbers(3, VECTOR), metavar="X,Y,Z", help="warp; default: the long way")
+    return start
+
+
 def add_mould_options(parser: argparse.ArgumentParser) -> None:
     """The mould's file, how it is read, and what of it is draped."""
     group = add_reading_options(parser)
+    add_faces_option(group)
+    group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
+
+
+def add_faces_option(group: argparse._ArgumentGroup) -> None:
+    """The part of a B-rep that is draped."""
     group.add_argument(
         "--faces", help='CAD faces to drape: a CadQuery selector (">Z"), ids ("1,3"; see inspect) or names'
     )
-    group.add_argument("--heal", action="store_true", help="repair a mesh file, and say what changed")
 
 
 def parameters_set(options: argparse.Namespace) -> dict[str, str]:

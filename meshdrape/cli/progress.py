@@ -6,6 +6,8 @@ import sys
 import time
 from typing import Any
 
+from meshdrape.cli.interrupt import check
+
 PATIENCE = 2.0
 
 
@@ -25,7 +27,8 @@ class Progress:
         self._task: Any = None
 
     def stage(self, name: str, total: int | None = None) -> None:
-        """Begin a stage; `total` steps where they can be counted."""
+        """Begin a stage; `total` steps where they can be counted. A Ctrl-C that a library lost ends it here."""
+        check()
         self._name, self._total = name, total
         if self._bar is not None:
             self._bar.update(self._task, description=name, total=total, completed=0)

@@ -77,7 +77,11 @@ def geodesic_distance(mould: HasSurface, point_a: ArrayLike, point_b: ArrayLike)
     surface = mould.surface
     ends = []
     for name, point in (("first", point_a), ("second", point_b)):
-        p = np.asarray(point, dtype=np.float64)
+        try:
+            p = np.asarray(point, dtype=np.float64)
+        except (TypeError, ValueError):
+            msg = f"the {name} point {point!r} is not a point; give X, Y, Z in mm"
+            raise StartError(msg) from None
         if p.shape != (3,) or not np.isfinite(p).all():
             msg = f"the {name} point {p.tolist()} is not a point; give X, Y, Z in mm"
             raise StartError(msg)

@@ -13,7 +13,7 @@ from meshdrape.mould.check import Fault, as_arrays, examine
 from meshdrape.mould.files import existing_file
 from meshdrape.mould.meshfile import read_mesh
 from meshdrape.mould.mould import CadFace, Mould
-from meshdrape.mould.read import MESH, read_mould
+from meshdrape.mould.read import MESH, read_mould, refuse_tolerances
 from meshdrape.mould.units import millimetres
 
 
@@ -64,6 +64,7 @@ def inspect_mould(
     """
     file = Path(path)
     if file.suffix.lower() in MESH:
+        refuse_tolerances(file, chord_tolerance, angle_tolerance)
         factor = millimetres(unit or "mm")
         mesh = read_mesh(existing_file(file))
         try:

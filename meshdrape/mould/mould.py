@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -78,6 +78,10 @@ class Mould:
         Of the tessellation, mm and rad; None for a mesh.
     notes : tuple of str
         What the reader should be told: several components, holes, corners welded. One line each.
+    parameters : tuple of (name, value)
+        That a script was run with, where they were not its own.
+    turned : bool
+        Whether it is the other side of the one that was read (:meth:`flipped`).
     healing : HealReport or None
         What was repaired, where that was asked for.
     """
@@ -93,6 +97,8 @@ class Mould:
     angle_tolerance: float | None = None
     notes: tuple[str, ...] = ()
     healing: HealReport | None = None
+    parameters: tuple[tuple[str, Any], ...] = ()
+    turned: bool = False
 
     def __post_init__(self) -> None:
         for name, dtype in (("vertices", np.float64), ("triangles", np.int64), ("triangle_face", np.int64)):
@@ -157,7 +163,7 @@ class Mould:
 
     def flipped(self) -> Mould:
         """Return the other side of the tool: the same mould with every triangle run round the other way."""
-        return replace(self, triangles=self.triangles[:, ::-1])
+        return replace(self, triangles=self.triangles[:, ::-1], turned=not self.turned)
 
     def __repr__(self) -> str:
         name = f"{self.source.name}: " if self.source else ""

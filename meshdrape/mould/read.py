@@ -68,6 +68,7 @@ def read_mould(
         if faces is not None:
             msg = f"{file} is a mesh and has no CAD faces: --faces goes with STEP, BREP or a CadQuery script"
             raise FileError(msg)
+        refuse_tolerances(file, chord_tolerance, angle_tolerance)
         return read_mesh_mould(file, unit, heal)
     if unit not in (None, "mm"):
         msg = f"{file} states its own unit and is read in mm: --unit goes with mesh files"
@@ -95,4 +96,16 @@ def read_mould(
             raise
         msg = f"{file}: Open CASCADE cannot work out its faces ({type(error).__name__}); mend them in CAD"
         raise MouldError(msg) from error
-    return replace(mould, source=file, sha256=file_sha256(file))
+    given = tuple((parameters or {}).items())
+    return replace(mould, source=file, sha256=file_sha256(file), parameters=given)
+
+
+def refuse_tolerances(file: Path, chord_tolerance: float | None, angle_tolerance: float | None) -> None:
+    """Raise FileError if tolerances were given for a mesh file, which is its own tessellation."""
+    for name, given in (("--chord-tolerance", chord_tolerance), ("--angle-tolerance", angle_tolerance)):
+        if given is not None:
+            msg = (
+                f"{file} is a mesh and is draped as it is: {name} goes with STEP, BREP or a CadQuery script; "
+                f"export the mesh finer"
+            )
+            raise FileError(msg)

@@ -6,6 +6,7 @@ a small one.
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -27,6 +28,7 @@ from meshdrape.weave.prescribed import StartFibres, prescribe
 from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:
+    from meshdrape.weave.balance import Balance
     from meshdrape.weave.measures import Measures
     from meshdrape.weave.net import Net
 
@@ -50,8 +52,18 @@ NODE: Final = np.dtype(
         ("status", "u1"),
     ]
 )
-CELL: Final = np.dtype([("vertex_indices", "i4", (4,)), *SHEAR_FIELDS])
+CELL: Final = np.dtype(
+    [
+        ("vertex_indices", "i4", (4,)),
+        *SHEAR_FIELDS,
+        ("predicted_shear_deg", "f8"),
+        ("balance_residual_deg", "f8"),
+        ("defect_deg", "f8"),
+    ]
+)
 GAP: Final = np.dtype([("i", "i4"), ("j", "i4"), ("length", "i4"), ("status", "u1")])
+SEAL: Final = np.dtype([("sha256", "u1", (32,))])
+_BALANCE: Final = ("predicted_shear_deg", "balance_residual_deg", "defect_deg")
 _NODES_PER_BLOCK: Final = 1 << 16  # some 7 MB of rows
 
 
@@ -67,6 +79,10 @@ class StoredNet:
         Unit warp direction at the seed.
     start_fibres : StartFibres
         What was prescribed of the generators.
+    generator_nodes : (4,) int
+        Nodes on +warp, +weft, -warp, -weft.
+    collar_depth : float
+        How far the surface went on past the mould's border, mm.
     seed_index : (int, int)
         Indices of the seed node, along warp and along weft.
     node_position : (n_warp, n_weft, 3) float64, mm
@@ -83,16 +99,26 @@ class StoredNet:
         The unit the mould's file was read in.
     mould_faces : tuple of int
         Ids of the CAD faces chosen; empty for a mesh.
+    mould_parameters : tuple of (name, value)
+        That a CadQuery script was run with.
+    mould_healed, mould_turned : bool
+        Whether the mesh was repaired on reading, and whether the cloth lies on the other side of it.
     chord_tolerance, angle_tolerance : float or None
         mm and rad, of the tessellation.
+    predicted_shear, balance_residual, cell_defect : (n_warp - 1, n_weft - 1) float64, rad
+        The curvature balance as it was written; NaN where there is no whole cell.
     version : str
         Of the meshdrape that wrote the file.
+    sealed : bool
+        Whether the file still is, byte for byte, what was written.
     """
 
     fabric: Fabric
     seed: FloatArray
     direction: FloatArray
     start_fibres: StartFibres
+    generator_nodes: list[int]
+    collar_depth: float
     seed_index: tuple[int, int]
     node_position: FloatArray
     node_status: NDArray[np.uint8]
@@ -103,19 +129,34 @@ class StoredNet:
     mould_sha256: str | None
     mould_unit: str
     mould_faces: tuple[int, ...]
+    mould_parameters: tuple[tuple[str, Any], ...]
+    mould_healed: bool
+    mould_turned: bool
     chord_tolerance: float | None
     angle_tolerance: float | None
+    predicted_shear: FloatArray
+    balance_residual: FloatArray
+    cell_defect: FloatArray
     version: str
+    sealed: bool
 
 
-def write_ply(net: Net, path: str | os.PathLike[str], measures: Measures | None = None) -> None:
+def write_ply(
+    net: Net,
+    path: str | os.PathLike[str],
+    measures: Measures | None = None,
+    foretold: Balance | None = None,
+) -> None:
     """Write a net as binary little-endian PLY.
 
     Vertices are the nodes that have a position, in rows along the weft: `x y z` (mm), `i j`, colour,
     `quality` (absolute shear, deg; 0 where there is no whole cell), `s t` (mm of cloth from the seed along
     warp and weft), `shear_deg` (signed), `warp_x ... weft_z`, `status`. Faces are the cells, their corners
-    counter-clockwise about the mould's normal, with colour, `quality` and `shear_deg`. A third element,
-    `gap`, holds the statuses of the nodes without position as runs. The comments say how the net was made.
+    counter-clockwise about the mould's normal, with colour, `quality`, `shear_deg` and the curvature balance:
+    `predicted_shear_deg`, `balance_residual_deg` (NaN where the fabric rectangle has missing cells) and
+    `defect_deg`, the angle defects the cell encloses. A third element, `gap`, holds the statuses of the nodes
+    without position as runs; a fourth, `seal`, the SHA-256 of all bytes before it. The comments say how the net
+    was made.
 
     Parameters
     ----------
@@ -123,6 +164,8 @@ def write_ply(net: Net, path: str | os.PathLike[str], measures: Measures | None 
     path : path-like
     measures : Measures, optional
         Of this net, if they are at hand; else they are taken here.
+    foretold : Balance, optional
+        Likewise.
 
     Raises
     ------
@@ -133,20 +176,28 @@ def write_ply(net: Net, path: str | os.PathLike[str], measures: Measures | None 
         from meshdrape.weave.measures import measure
 
         measures = measure(net)
+    if foretold is None:
+        from meshdrape.weave.balance import balance
+
+        foretold = balance(measures)
     status = net.node_status
     has_position = status <= NodeStatus.OFF_MOULD
     gaps = _gaps(status, has_position)
     cells = Element("face", _n_cells(has_position), CELL)
     nodes = Element("vertex", int(has_position.sum()), NODE)
-    elements = [nodes, cells, Element("gap", len(gaps), GAP)]
+    seal = Element("seal", 1, SEAL)
+    elements = [nodes, cells, Element("gap", len(gaps), GAP), seal]
     with ply_writer(path, elements, to_comments(_provenance(net, path))) as ply:
         for start, end in _blocks(*status.shape):
             ply.write("vertex", _node_rows(nodes, net, measures, has_position[start:end], start))
         first = 0  # vertex of the first node in the block
         for start, end in _blocks(status.shape[0] - 1, status.shape[1]):
-            ply.write("face", _cell_rows(cells, net, measures, has_position[start : end + 1], start, first))
+            ply.write("face", _cell_rows(cells, net, measures, foretold, has_position[start : end + 1], start, first))
             first += int(has_position[start:end].sum())
         ply.write("gap", gaps)
+        digest = seal.rows(1)
+        digest["sha256"] = np.frombuffer(ply.digest(), dtype=np.uint8)
+        ply.write("seal", digest)
 
 
 def read_net(path: str | os.PathLike[str]) -> StoredNet:
@@ -162,7 +213,7 @@ def read_net(path: str | os.PathLike[str]) -> StoredNet:
     ply = read_ply(path)
     try:
         return _stored_net(Path(path), ply)
-    except (KeyError, ValueError, IndexError, TypeError) as error:
+    except (KeyError, ValueError, IndexError, TypeError, AttributeError, OverflowError) as error:
         msg = f"{path} is not a net that meshdrape wrote ({_reason(error)}); give the NET.ply of a drape"
         raise NetError(msg) from None
 
@@ -210,7 +261,13 @@ def _node_rows(element: Element, net: Net, measures: Measures, has_position: NDA
 
 
 def _cell_rows(
-    element: Element, net: Net, measures: Measures, has_position: NDArray[np.bool_], start: int, first: int
+    element: Element,
+    net: Net,
+    measures: Measures,
+    foretold: Balance,
+    has_position: NDArray[np.bool_],
+    start: int,
+    first: int,
 ) -> Rows:
     whole = _whole(has_position)
     vertex = (first - 1 + np.cumsum(has_position, dtype=np.int32)).reshape(has_position.shape)
@@ -220,6 +277,8 @@ def _cell_rows(
         rows["vertex_indices"][:, k] = corner[whole]
     shear = measures.cell_shear[start : start + len(whole)][whole]
     fill_shear(rows, shear, net.fabric.locking_angle)
+    for name, field in zip(_BALANCE, (foretold.predicted, foretold.residual, foretold.cell_defect), strict=True):
+        rows[name] = np.degrees(field[start : start + len(whole)][whole])
     return rows
 
 
@@ -252,12 +311,17 @@ def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
         "seed": np.asarray(net.seed).tolist(),
         "direction": np.asarray(net.direction).tolist(),
         **_prescribed(net),
+        "generator_nodes": net.start.n_nodes.tolist(),
+        "collar_depth": net.collar_depth,
         "seed_index": [int(index) for index in net.seed_index],
         "nodes": list(net.node_status.shape),
         "mould_file": source,
         "mould_sha256": mould.sha256,
         "mould_unit": mould.unit,
         "mould_faces": [face.id for face in mould.cad_faces],
+        "mould_parameters": dict(mould.parameters),
+        "mould_healed": mould.healing is not None,
+        "mould_turned": mould.turned,
         "chord_tolerance": mould.chord_tolerance,
         "angle_tolerance_rad": mould.angle_tolerance,
     }
@@ -275,9 +339,33 @@ def _prescribed(net: Net) -> dict[str, Any]:
     return values
 
 
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _sealed(path: Path, ply: PlyFile) -> bool:
+    """Tell whether the file's last bytes are the SHA-256 of all before them."""
+    seal = ply.elements["seal"]
+    left = path.stat().st_size - seal.nbytes
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while left > 0 and (block := file.read(min(left, 1 << 22))):
+            digest.update(block)
+            left -= len(block)
+    return len(seal) == 1 and seal["sha256"][0].tobytes() == digest.digest()
+
+
 def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     made = from_comments(ply.comments)
     n_warp, n_weft = made["nodes"]
+    seed, direction = (np.array(made[name], dtype=np.float64) for name in ("seed", "direction"))
+    origin = (int(made["seed_index"][0]), int(made["seed_index"][1]))
+    if not (seed.shape == direction.shape == (3,) and np.isfinite([seed, direction]).all() and direction.any()):
+        msg = "its seed or direction is none"
+        raise ValueError(msg)
+    if not (0 <= origin[0] < n_warp and 0 <= origin[1] < n_weft):
+        msg = f"its seed has the index {origin} in {n_warp} x {n_weft} nodes"
+        raise ValueError(msg)
     node, cell, gap = (ply.elements[name] for name in ("vertex", "face", "gap"))
     n_gaps = int(gap["length"].sum())
     if n_warp * n_weft != len(node) + n_gaps:
@@ -298,27 +386,38 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     if int((status <= NodeStatus.OFF_MOULD).sum()) != len(node):
         msg = "some of its nodes share a place"
         raise ValueError(msg)
-    shear = np.full((n_warp - 1, n_weft - 1), np.nan)
+    shear, *foretold = (np.full((max(n_warp - 1, 0), max(n_weft - 1, 0)), np.nan) for _ in range(4))
     for start in range(0, len(cell), _NODES_PER_BLOCK):
         rows = cell[start : start + _NODES_PER_BLOCK]
         corner = node[rows["vertex_indices"][:, 0]]
-        shear[corner["i"], corner["j"]] = np.radians(rows["shear_deg"])
+        at = corner["i"], corner["j"]
+        for field, name in zip((shear, *foretold), ("shear_deg", *_BALANCE), strict=True):
+            field[at] = np.radians(rows[name])
     return StoredNet(
         fabric=Fabric(tuple(made["spacing"]), made["initial_angle_rad"], made["locking_angle_rad"]),
-        seed=np.array(made["seed"], dtype=np.float64),
-        direction=np.array(made["direction"], dtype=np.float64),
+        seed=seed,
+        direction=direction,
+        seed_index=origin,
         start_fibres=prescribe(*(made.get(name) for name in _PRESCRIBED)),
-        seed_index=(int(made["seed_index"][0]), int(made["seed_index"][1])),
+        generator_nodes=[int(n) for n in made["generator_nodes"]],
+        collar_depth=float(made["collar_depth"]),
         node_position=arrays[0],
         node_status=status,
         warp_direction=arrays[1],
         weft_direction=arrays[2],
         cell_shear=shear,
         mould_file=None if made["mould_file"] is None else path.parent / made["mould_file"],
-        mould_sha256=made["mould_sha256"],
-        mould_unit=made["mould_unit"],
-        mould_faces=tuple(made["mould_faces"]),
-        chord_tolerance=made["chord_tolerance"],
-        angle_tolerance=made["angle_tolerance_rad"],
+        mould_sha256=None if made["mould_sha256"] is None else str(made["mould_sha256"]),
+        mould_unit=str(made["mould_unit"]),
+        mould_faces=tuple(int(number) for number in made["mould_faces"]),
+        mould_parameters=tuple(made["mould_parameters"].items()),
+        mould_healed=bool(made["mould_healed"]),
+        mould_turned=bool(made["mould_turned"]),
+        chord_tolerance=_number(made["chord_tolerance"]),
+        angle_tolerance=_number(made["angle_tolerance_rad"]),
+        predicted_shear=foretold[0],
+        balance_residual=foretold[1],
+        cell_defect=foretold[2],
         version=made["meshdrape"],
+        sealed=_sealed(path, ply),
     )

@@ -5,8 +5,10 @@ all have k entries. Doubles stay doubles and every property is kept, which the P
 usual mesh libraries do not do. The reader is in :mod:`meshdrape.output.ply_reader`.
 """
 
+import hashlib
 import os
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, BinaryIO, Final
@@ -17,6 +19,8 @@ from numpy.typing import NDArray
 from meshdrape.output.files import atomic_write
 
 Rows = NDArray[np.void]
+
+_MOST_WAITING: Final = 4  # blocks whose digest is still to be taken
 
 _TYPE_NAME: Final = {
     "i1": "char",
@@ -72,14 +76,37 @@ def _fields(row: np.dtype[Any]) -> list[tuple[str, np.dtype[Any]]]:
 
 
 class PlyWriter:
-    """Rows on their way into a PLY file, element by element in the order of the header."""
+    """Rows on their way into a PLY file, element by element in the order of the header.
+
+    Rows that were handed over must not be changed afterwards.
+    """
 
     def __init__(self, file: BinaryIO, elements: Sequence[Element], comments: Sequence[str] = ()) -> None:
         self._file = file
+        self._digest = hashlib.sha256()
+        self._worker = ThreadPoolExecutor(1)
+        self._digested: list[Future[None]] = []
         self._expected = [(element.name, element.count) for element in elements]
         header = "".join(f"comment {comment}\n" for comment in comments)
         header += "".join(element.header() for element in elements)
-        file.write(f"ply\nformat binary_little_endian 1.0\n{header}end_header\n".encode("ascii"))
+        self._put(f"ply\nformat binary_little_endian 1.0\n{header}end_header\n".encode("ascii"))
+
+    def _put(self, data: bytes | memoryview) -> None:
+        # beside the writing: a digest of a gigabyte takes as long as the gigabyte
+        self._digested.append(self._worker.submit(self._digest.update, data))
+        self._file.write(data)
+        while len(self._digested) > _MOST_WAITING:
+            self._digested.pop(0).result()
+
+    def digest(self) -> bytes:
+        """Return the SHA-256 of all bytes written so far."""
+        while self._digested:
+            self._digested.pop(0).result()
+        return self._digest.digest()
+
+    def close(self) -> None:
+        """Let go of the thread that takes the digest."""
+        self._worker.shutdown()
 
     def write(self, name: str, rows: Rows) -> None:
         """Append rows, made by `Element.rows`, to the element called `name`.
@@ -95,7 +122,7 @@ class PlyWriter:
             msg = f"{len(rows)} rows of {name} do not fit where {self._expected[:1]} are expected"
             raise ValueError(msg)
         self._expected[0] = (name, self._expected[0][1] - len(rows))
-        self._file.write(rows.data)
+        self._put(rows.data)
 
     def check_complete(self) -> None:
         """Raise ValueError if rows that the header announces were not written."""
@@ -127,5 +154,8 @@ def ply_writer(
     """
     with atomic_write(path) as file:
         writer = PlyWriter(file, elements, comments)
-        yield writer
-        writer.check_complete()
+        try:
+            yield writer
+            writer.check_complete()
+        finally:
+            writer.close()

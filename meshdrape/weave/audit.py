@@ -74,14 +74,18 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
     seconds : float
         Stop after this long, with what has been measured.
     """
-    begun = time.perf_counter()
     placed = net.node_status <= NodeStatus.OFF_MOULD
-    counts = (np.count_nonzero(placed[:-1] & placed[1:]), np.count_nonzero(placed[:, :-1] & placed[:, 1:]))
-    population = int(sum(counts))
+    sample = sample_edges(placed, edges, np.random.default_rng(seed))
+    return audit_edges(net, sample, count_edges(placed), seconds)
+
+
+def audit_edges(net: Net, sample: list[tuple[int, int, int]], population: int, seconds: float) -> Audit:
+    """Measure given edges (family, i, j) of a net with libigl; stop after so many seconds."""
+    begun = time.perf_counter()
     worst, worst_edge = float("nan"), (0, 0, 0)
     measured = second = through = arcs = skipped = 0
     worst_through = 0.0
-    for family, i, j in _sample(placed, population, edges, np.random.default_rng(seed)):
+    for family, i, j in sample:
         generator = _generator_edge(net, family, i, j)
         if generator and net.start.arc[generator]:
             arcs += 1
@@ -117,10 +121,14 @@ def audit(net: Net, edges: int = 1000, seed: int = 0, seconds: float = float("in
     )
 
 
-def _sample(
-    placed: NDArray[np.bool_], population: int, edges: int, rng: np.random.Generator
-) -> list[tuple[int, int, int]]:
-    """Distinct edges (family, i, j), without ever listing all edges of a large net."""
+def count_edges(placed: NDArray[np.bool_]) -> int:
+    """Number of edges between nodes, (n_warp, n_weft), that are there."""
+    return int(np.count_nonzero(placed[:-1] & placed[1:]) + np.count_nonzero(placed[:, :-1] & placed[:, 1:]))
+
+
+def sample_edges(placed: NDArray[np.bool_], edges: int, rng: np.random.Generator) -> list[tuple[int, int, int]]:
+    """Distinct edges (family, i, j) in random order, without ever listing all edges of a large net."""
+    population = count_edges(placed)
     if population <= 4 * edges:
         warp = np.argwhere(placed[:-1] & placed[1:])
         weft = np.argwhere(placed[:, :-1] & placed[:, 1:])

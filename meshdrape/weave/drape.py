@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 ENGINES = ("fast", "libigl")
+# Digits that a coordinate has, relative to the mould's size.
+ROUND_OFF = 1e-16
 
 
 def drape(
@@ -92,7 +94,7 @@ def drape(
         generator that is to turn never meets a crease or turns back over it; if a point of a path lies farther than
         one spacing from the mould, or two paths do not cross.
     FabricError
-        If the spacing is larger than the mould.
+        If the spacing is larger than the mould, or below the round-off of its coordinates.
     NetError
         If the net would not fit in the memory.
     """
@@ -104,6 +106,12 @@ def drape(
     size = mould.surface.diagonal
     if longest > size:
         msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
+        raise FabricError(msg)
+    shortest = min(fabric.warp_spacing, fabric.weft_spacing)
+    if shortest < ROUND_OFF * size:
+        msg = (
+            f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"
+        )
         raise FabricError(msg)
     extent = _checked_extent(extent)
     given = prescribe(warp_turn, weft_turn, warp_path, weft_path)
@@ -161,6 +169,7 @@ def drape(
         seed=point.position(part),
         seed_distance=distance,
         direction=start.tangent[0, 0] * frame[3:6] + start.tangent[0, 1] * frame[6:9],
+        collar_depth=laid.collar_depth,
         start_fibres=given,
         notes=tuple(notes),
         settled_by_libigl=laid.settled,

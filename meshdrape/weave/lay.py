@@ -49,6 +49,7 @@ class Laid:
     """A sheet as it was laid: the extended surface, the lattice on it, and the nodes that libigl had to settle."""
 
     surface: Surface
+    collar_depth: float
     lattice: Lattice
     start: Start
     settled: int
@@ -88,7 +89,8 @@ def lay(
     StartError
         If a start fibre cannot run as asked.
     """
-    surface = _with_collar(part, _collar_depth(part, fabric, extent, courses))
+    depth = _collar_depth(part, fabric, extent, courses)
+    surface = _with_collar(part, depth)
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
     bounded = part.area if extent is None else min(part.area, (extent[0] + extent[1]) * (extent[2] + extent[3]))
@@ -123,7 +125,7 @@ def lay(
                 break
             lattice, start = _grown(lattice, start, grow, fabric, memory)
             lattice.status[lattice.status == NodeStatus.NOT_REACHED] = NodeStatus.OUTSIDE
-    return Laid(surface, lattice, start, settled)
+    return Laid(surface, depth, lattice, start, settled)
 
 
 def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:

@@ -42,6 +42,8 @@ class Net:
     seed_distance : float
         How far the seed asked for lay from the mould, mm.
     direction : (3,) unit warp direction at the seed
+    collar_depth : float
+        How far the surface goes on past the mould's border, mm.
     start_fibres : StartFibres
         What was prescribed of the generators.
     notes : tuple of str
@@ -58,6 +60,7 @@ class Net:
     seed: FloatArray
     seed_distance: float
     direction: FloatArray
+    collar_depth: float = 0.0
     start_fibres: StartFibres = field(default_factory=StartFibres)
     notes: tuple[str, ...] = ()
     settled_by_libigl: int = 0

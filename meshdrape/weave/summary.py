@@ -93,13 +93,14 @@ def summarise(
         "weft_angle_deg": _angles(field, field.weft_angle),
         "statuses": {status.name: net.count(status) for status in NodeStatus if net.count(status)},
         "first_places": _first_places(net),
-        "settled_by_libigl": net.settled_by_libigl,
+        "nodes_by_libigl": net.settled_by_libigl,
         "audit_max_relative_error": audit.max_relative_error,
         "audit": asdict(audit),
         "mesh_noise_deg": math.degrees(noise),
         "balance_residual_deg": math.degrees(balance.worst),
+        "balance_residual_at": None if balance.worst_position is None else balance.worst_position.tolist(),
         "faces": _by_cad_face(measures, field),
-        "notes": [*mould.notes, *net.notes],
+        "notes": [*mould.notes, *net.notes, *_meeting(net)],
         "warnings": [],
         "seconds": {stage: round(value, 3) for stage, value in seconds.items()},
     }
@@ -148,8 +149,26 @@ def _first_places(net: Net) -> dict[str, dict[str, Any]]:
             (int(i[n] - np.sign(i[n] - i0)), int(j[n])) if i[n] != i0 else (int(i[n]), int(j[n] - np.sign(j[n] - j0)))
         )
         place = net.positions(parent[0], parent[0] + 1)[0, parent[1]]
-        found[status.name] = {"node": [int(i[n] - i0), int(j[n] - j0)], "near": place.tolist()}
+        near = place.tolist() if np.isfinite(place).all() else None
+        found[status.name] = {"node": [int(i[n] - i0), int(j[n] - j0)], "near": near}
     return found
+
+
+def _first(where: dict[str, Any]) -> str:
+    """Where an outcome comes first, in words."""
+    i, j = where["node"]
+    near = where["near"]
+    place = "" if near is None else f" near ({', '.join(f'{v:.1f}' for v in near)})"
+    return f"first at node ({i}, {j}) from the seed{place}"
+
+
+def _meeting(net: Net) -> list[str]:
+    """That a net ends where it meets itself: no fault, but something to know."""
+    n = net.count(NodeStatus.MET_ITSELF)
+    if not n:
+        return []
+    where = _first(_first_places(net)[NodeStatus.MET_ITSELF.name])
+    return [f"the net meets itself: {n:,} nodes MET_ITSELF, {where}"]
 
 
 def _by_cad_face(measures: Measures, field: MouldField) -> list[dict[str, Any]]:
@@ -200,11 +219,11 @@ def _warnings(measures: Measures, summary: dict[str, Any], noise: float) -> list
             f"the cloth locks: {summary['max_shear_deg']:.2f} degrees of shear where {lock:g} are possible, "
             f"{summary['over_locking_percent']:.2g} % of the area above"
         )
-    for status in MISSING:
-        if net.count(status):
-            where = summary["first_places"][status.name]
-            near = ", ".join(f"{v:.1f}" for v in where["near"])
-            warnings.append(f"{net.count(status)} nodes {status.name}, first at node {where['node']} near ({near})")
+    warnings += [
+        f"{net.count(status):,} nodes {status.name}, {_first(summary['first_places'][status.name])}"
+        for status in MISSING
+        if net.count(status)
+    ]
     if noise > NOISE_SHARE * fabric.locking_angle:
         warnings.append(
             f"the mesh alone can falsify the shear by {math.degrees(noise):.2f} degrees, more than a tenth of the "

@@ -255,7 +255,7 @@ def test_points_on_separate_parts():
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("point", [(np.nan, 0, 0), (0, np.inf, 0), (1, 2), None])
+@pytest.mark.parametrize("point", [(np.nan, 0, 0), (0, np.inf, 0), (1, 2), None, "abc", ("a", 0, 0), [[1], 2, 3]])
 def test_points_that_are_none(point):
     with pytest.raises(StartError, match="point"):
         distance(plate(), (0, 0, 0), point)

@@ -13,6 +13,8 @@ import sys
 import numpy as np
 import meshdrape
 from moulds import bumpy, cube_corner, wing_spar
+from meshdrape.weave.balance import balance
+from meshdrape.weave.rebuild import rebuild
 
 nets = {}
 cases = {
@@ -27,7 +29,10 @@ for name, (mesh, spacing, seed, direction) in cases.items():
     net = meshdrape.drape(mesh.mould(), fabric, seed, direction, threads=1)
     nets[name + "_position"] = net.node_position
     nets[name + "_status"] = net.node_status
-    nets[name + "_shear"] = meshdrape.measure(net).cell_shear
+    measures = meshdrape.measure(net)
+    nets[name + "_shear"] = measures.cell_shear
+    nets[name + "_foretold"] = balance(measures).predicted
+    nets[name + "_gap"] = rebuild(net.mould, net).edge_gap / spacing
     nets[name + "_warp"] = net.warp_direction
 np.savez(sys.argv[1], **nets)
 """

@@ -24,6 +24,9 @@ class KnownMould:
     cad_faces: tuple = ()
     chord_tolerance: float | None = None
     angle_tolerance: float | None = None
+    parameters: tuple = ()
+    healing: object = None
+    turned: bool = False
 
     @cached_property
     def surface(self) -> Surface:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from cases import CASES
 from moulds import cone, cube_corner, cylinder, hypar, icosphere, plate, wing_spar
 
 import meshdrape
@@ -39,25 +38,6 @@ def test_seed_on_the_corner_shares_its_defect(degrees):
     assert known.sum() > 300
     assert np.degrees(np.abs(found.predicted[known])) == pytest.approx(np.full(known.sum(), 22.5), abs=1e-9)
     assert np.degrees(found.worst) < 1e-6
-
-
-@pytest.mark.parametrize("name", ["hills", "hills, long cells", "double curved", "hypar", "cap, cells above triangles"])
-def test_holds_to_the_defects_of_the_partly_counted_cells(name):
-    """Half of its last row's and column's, a quarter of its own: what is counted wholly or not at all is exact.
-
-    A vertex beside a fibre may be taken for one of the next cell, so a few cells in a hundred are let off.
-    """
-    net = CASES[name].drape()
-    found = of(net)
-    size = np.abs(found.cell_defect)
-    i0, j0 = net.seed_index
-    held = []
-    for i, j in np.argwhere(np.isfinite(found.residual) & found.measures.cell_touches_mould):
-        row = size[i, j0 : j + 1] if j >= j0 else size[i, j:j0]
-        column = size[i0 : i + 1, j] if i >= i0 else size[i:i0, j]
-        held.append(abs(found.residual[i, j]) <= row.sum() + column.sum() + 1e-8)
-    assert len(held) > 100
-    assert np.mean(held) > 0.95
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,195 @@
+"""How sure the maximum shear is: the same drape on three tessellations of the mould."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
+from meshdrape.errors import MouldError
+from meshdrape.mould.read import read_mould
+from meshdrape.weave.drape import drape
+from meshdrape.weave.fabric import Fabric
+from meshdrape.weave.measures import Measures, measure
+from meshdrape.weave.noise import mesh_noise
+
+if TYPE_CHECKING:
+    from meshdrape.mould import Mould
+    from meshdrape.weave.net import Net
+
+# Both tolerances from one tessellation to the next.
+RATIO = 2.0
+# Observed orders that may be believed, in powers of the tolerances. No error of facets falls faster than their width
+# squared, which is the chord tolerance: a larger order is luck, and the first is taken.
+LOWEST_ORDER, HIGHEST_ORDER, SUREST_ORDER = 0.4, 2.2, 1.0
+# Safety factor of a bar from three grids of believable order; of the spread where the order is not.
+# (Roache, Perspective: A method for uniform reporting of grid refinement studies, J. Fluids Eng. 116, 1994.)
+SAFETY, SPREAD_SAFETY = 1.25, 1.5
+# Coarsest facets, rad.
+COARSEST = math.radians(60.0)
+# Angles between directions carried along a net err by this, rad: the least a bar can be.
+ROUND_OFF = 1e-8
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """The maximum shear on three tessellations, and what follows from them.
+
+    Attributes
+    ----------
+    triangles : (int, int, int)
+        Of the mould, coarse to fine.
+    angle_tolerance, chord_tolerance : (float, float, float)
+        rad and mm.
+    max_shear : (float, float, float)
+        rad, coarse to fine.
+    order : float or None
+        In which power of the tolerances the error falls, where the three agree on one; None where they do not, and
+        the bar is their spread.
+    noise : float
+        Shear that the facets of the finest mesh can falsify, rad.
+    error_bar : float
+        By how much the finest maximum may be off for being measured on facets, rad, for this spacing.
+    spacing_error : float
+        By how much it may be off the limit of ever finer cloth, rad: its change from twice this spacing, times 1.25. Of
+        first order where the largest shear is at the cloth's end, for the middle of the last cell lies half a spacing
+        before it.
+    """
+
+    triangles: tuple[int, int, int]
+    angle_tolerance: tuple[float, float, float]
+    chord_tolerance: tuple[float, float, float]
+    max_shear: tuple[float, float, float]
+    order: float | None
+    noise: float
+    error_bar: float
+    spacing_error: float
+
+    def facts(self) -> dict[str, Any]:
+        """All of it in plain types, angles in degrees (``_deg``)."""
+        return {
+            "triangles": list(self.triangles),
+            "angle_tolerance_deg": [math.degrees(value) for value in self.angle_tolerance],
+            "chord_tolerance_mm": list(self.chord_tolerance),
+            "max_shear_deg": [math.degrees(value) for value in self.max_shear],
+            "order": self.order,
+            "mesh_noise_deg": math.degrees(self.noise),
+            "error_bar_deg": math.degrees(self.error_bar),
+            "spacing_error_deg": math.degrees(self.spacing_error),
+        }
+
+
+def refine(
+    mould: Mould,
+    fabric: Fabric,
+    seed: ArrayLike | None = None,
+    direction: ArrayLike | None = None,
+    extent: tuple[float, float, float, float] | None = None,
+    *,
+    net: Net | None = None,
+    threads: int | None = None,
+) -> Convergence:
+    """The error of the maximum shear, from draping on two coarser tessellations of the mould as well.
+
+    Parameters
+    ----------
+    mould : Mould
+        Of a B-rep or a script, read from its file: the file is read again with both tolerances doubled, and doubled
+        once more.
+    fabric, seed, direction, extent, threads
+        As for :func:`meshdrape.drape`.
+    net : Net, optional
+        The drape on `mould` itself, where it is at hand.
+
+    Raises
+    ------
+    MouldError
+        If the mould is a mesh, which has nothing finer behind it.
+
+    Notes
+    -----
+    Where the three maxima fall monotonically with a believable order p, the error of the finest is that of Richardson's
+    extrapolation, |f3 - f2| / (2^p - 1) with p at most 1, times 1.25; elsewhere one and a half times their spread. The
+    maximum wanders from cell to cell and facets err at random, so two maxima may agree by chance: the bar is never
+    below the mesh's own noise.
+    """
+    require_refinable(mould)
+    if net is None:
+        net = drape(mould, fabric, seed, direction, extent=extent, threads=threads)
+    nets = [net]
+    for power in (1, 2):
+        coarse = _read_again(mould, RATIO**power)
+        # the very same start, on the coarser facets
+        at = coarse.surface.closest_point(net.seed)[0].position(coarse.surface)
+        nets.insert(0, drape(coarse, fabric, at, net.direction, extent=extent, threads=threads))
+    maxima = [_max_shear(measure(each)) for each in nets]
+    noise = mesh_noise(net.surface.mould_part)
+    order, error = extrapolated(*maxima)
+    twice = Fabric((2 * fabric.warp_spacing, 2 * fabric.weft_spacing), fabric.initial_angle, fabric.locking_angle)
+    wide = drape(mould, twice, net.seed, net.direction, extent=extent, threads=threads)
+    moulds = [each.mould for each in nets]
+    return Convergence(
+        triangles=_three(len(each.triangles) for each in moulds),
+        angle_tolerance=_three(each.angle_tolerance for each in moulds),
+        chord_tolerance=_three(each.chord_tolerance for each in moulds),
+        max_shear=_three(maxima),
+        order=order,
+        noise=noise,
+        error_bar=max(error, noise, ROUND_OFF),
+        spacing_error=SAFETY * abs(_max_shear(measure(wide)) - maxima[-1]),
+    )
+
+
+def require_refinable(mould: Mould) -> None:
+    """Raise MouldError if a mould has no file of exact faces behind it."""
+    if mould.source is None or mould.angle_tolerance is None:
+        msg = (
+            f"{mould.source or 'the mould'} is a mesh, its own truth: there is nothing finer to compare it with; "
+            f"refine the STEP, BREP or CadQuery script it was made from"
+        )
+        raise MouldError(msg)
+
+
+def extrapolated(coarse: float, middle: float, fine: float, ratio: float = RATIO) -> tuple[float | None, float]:
+    """Observed order and error of the finest of three values whose tolerances differ by a ratio.
+
+    Returns
+    -------
+    order : float or None
+        None where the three are not in the asymptotic range.
+    error : float
+        With its safety factor.
+    """
+    first, second = middle - coarse, fine - middle
+    spread = max(coarse, middle, fine) - min(coarse, middle, fine)
+    if first * second > 0:
+        order = math.log(abs(first) / abs(second)) / math.log(ratio)
+        if LOWEST_ORDER <= order <= HIGHEST_ORDER:
+            return order, SAFETY * abs(second) / (ratio ** min(order, SUREST_ORDER) - 1)
+    return None, SPREAD_SAFETY * spread
+
+
+def _read_again(mould: Mould, factor: float) -> Mould:
+    """The same faces of the same file with both tolerances larger by a factor."""
+    assert mould.source is not None
+    assert mould.angle_tolerance is not None
+    assert mould.chord_tolerance is not None
+    coarse = read_mould(
+        mould.source,
+        faces=[face.id for face in mould.cad_faces],
+        chord_tolerance=factor * mould.chord_tolerance,
+        angle_tolerance=min(factor * mould.angle_tolerance, COARSEST),
+        parameters=dict(mould.parameters) or None,
+    )
+    return coarse.flipped() if mould.turned else coarse
+
+
+def _max_shear(measures: Measures) -> float:
+    return measures.max_shear if measures.n_cells else 0.0
+
+
+def _three(values: Any) -> Any:
+    a, b, c = values
+    return a, b, c
