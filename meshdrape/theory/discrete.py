@@ -192,8 +192,8 @@ def _cannot(sheet: Sheet, y: FloatArray) -> NetError:
     if len(sheet.exit_column):
         back = float(sheet.y[sheet.exit_column[0]])
         return NetError(
-            f"rows come back from the spar to the wing from y = {back:.6g} on, and near y = {y[0]:.6g} the net no longer "
-            "closes on a wing laid undeformed; start at the other end, or use characteristic_net"
+            f"rows come back from the spar to the wing from y = {back:.6g} on, and near y = {y[0]:.6g} the net no "
+            "longer closes on a wing laid undeformed; start at the other end, or use characteristic_net"
         )
     return NetError(
         f"near y = {y[0]:.6g} no link of length {sheet.spacing:g} can be laid across the crease: it turns too fast for "
