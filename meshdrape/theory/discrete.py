@@ -35,7 +35,8 @@ def discrete_net(fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, 
     Raises
     ------
     NetError
-        If the crease turns so much within one spacing that a link cannot be laid across it.
+        If the crease turns so much within one spacing that a link cannot be laid across it; or if rows come back to the
+        wing (`returning_rows`) and what they are off by there adds up to a spacing.
     """
     sheet = Sheet(fold, spacing, height, gamma, row_offset)
     entries = _entries(sheet)
@@ -188,6 +189,12 @@ def _done(sheet: Sheet, y: FloatArray, step: FloatArray) -> bool:
 
 
 def _cannot(sheet: Sheet, y: FloatArray) -> NetError:
+    if len(sheet.exit_column):
+        back = float(sheet.y[sheet.exit_column[0]])
+        return NetError(
+            f"rows come back from the spar to the wing from y = {back:.6g} on, and near y = {y[0]:.6g} the net no "
+            "longer closes on a wing laid undeformed; start at the other end, or use characteristic_net"
+        )
     return NetError(
         f"near y = {y[0]:.6g} no link of length {sheet.spacing:g} can be laid across the crease: it turns too fast for "
         "this spacing; lower the spacing"

@@ -312,8 +312,11 @@ def test_refused():
             discrete_net(FIGURE_4, *parameters)
     with pytest.raises(NetError, match=r"too large; raise the spacing"):
         characteristic_net(FIGURE_4, 1e-4, 1.0)
+    with pytest.raises(NetError, match=r"rows come back .* from y = .* start at the other end"):
+        discrete_net(Fold(flat(2.0), linear_deviation(-0.5, 2.0)), 0.02, 0.5, 0.4)
+    tilted = linear_deviation(0.2, 2.0)
     with pytest.raises(NetError, match=r"near y = .*lower the spacing"):
-        discrete_net(Fold(flat(1.0), ripple_deviation(0.3, 0.1, 1.0)), 0.1, 0.5)
+        discrete_net(Fold(flat(2.0), tilted + named_deviation("sine", 2.0, c=0.02, wavelength=0.1)), 0.1, 0.3)
 
 
 @pytest.mark.parametrize("build", BOTH)
