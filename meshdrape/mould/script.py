@@ -107,4 +107,3 @@ def _line_of(error: BaseException | None) -> str:
             line = trace.tb_lineno
         trace = trace.tb_next
     return f", line {line}," if line else ""
-
