@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 # A well-shaped facet tilts from its face by six tenths of the turn from node to node.
 MOST_TILT: Final = 1.2
-# What is foreseen to take this many times the most triangles there may be is refused before it is tried.
-ESTIMATE: Final = 4.0
+# The estimate is low, by five times and more on the samples: at this share of the most triangles there may be, no try.
+ESTIMATE: Final = 0.5
 # An outline that crosses itself is divided more finely so often.
 MOST_ATTEMPTS: Final = 6
 
