@@ -1,4 +1,4 @@
-"""Whatever the mesh, the spacing and the start: no crash, no hang, exact edges, the same net on any number of threads."""
+"""Whatever the mesh, spacing and start: no crash, no hang, exact edges, the same net on any number of threads."""
 
 import faulthandler
 import json
