@@ -112,14 +112,18 @@ def surface_distance(
     """
     chord = float(np.linalg.norm(a.position(surface) - b.position(surface)))
     size = surface.diagonal
+    # no path is shorter, but for round-off: libigl's own, and that of the places
+    least = chord * (1 - 1e-9) - 32 * float(np.finfo(float).eps * np.abs(surface.vertices).max())
     reach = max(bound or 0.0, 1.1 * chord, 1e-9 * size)
     while True:
         faces = faces_between(surface, a, b, reach)
         if len(faces):
             found, moved = _on_patch(Patch.around(surface, faces, a, b, reach), surface, a, b)
-            if not chord * (1 - 1e-9) <= found < float("inf"):
+            if not least <= found < float("inf"):
                 # not reached, or libigl's 0 for a target not reached: cut off by a hull too small
                 found, moved = _on_patch(Patch(surface, faces), surface, a, b)
+                if found + moved < least:
+                    found = float("inf")
             # on the whole component, or no longer than the paths the patch is sure to hold
             if found <= reach * (1 + 1e-12) or len(faces) == len(surface.faces):
                 return found, moved

@@ -172,11 +172,12 @@ def _cut(
             patch._vertices.append(position)
         return number[key]
 
+    pieces = _kept_pieces(surface, faces, centre, radius)
     for face in faces.tolist():
         ring: list[int] = []
         for k in range(3):
             u, v = sorted((int(surface.faces[face, k]), int(surface.faces[face, (k + 1) % 3])))
-            kept = _kept_piece(surface.vertices[u], surface.vertices[v], centre, radius)
+            kept = pieces[u, v]
             if kept is None:
                 continue
             piece = []
@@ -220,6 +221,28 @@ def _ball_outline(surface: Surface, face: int, centre: FloatArray, radius: float
     size = float(np.linalg.norm(normal))
     heights = [np.cross(e - s, rim - s) @ normal / size / np.linalg.norm(e - s) for s, e in ((a, b), (b, c), (c, a))]
     return list(rim[np.min(heights, axis=0) > 0.05 * radius])
+
+
+def _kept_pieces(
+    surface: Surface, faces: IntArray, centre: FloatArray, radius: float
+) -> dict[tuple[int, int], tuple[float, float] | None]:
+    """Part of each edge u-v, u < v, of the faces that is kept.
+
+    Where an edge keeps an end, all edges there do: a hull with a corner in it runs along the whole of the edges at that
+    corner, and the face beyond must have the same vertices on them.
+    """
+    corners = surface.faces[faces]
+    edges = np.unique(np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1), axis=0)
+    pieces: dict[tuple[int, int], tuple[float, float] | None] = {}
+    kept_ends: set[int] = set()
+    for u, v in edges.tolist():
+        piece = pieces[u, v] = _kept_piece(surface.vertices[u], surface.vertices[v], centre, radius)
+        if piece is not None:
+            kept_ends.update(end for end, t in zip((u, v), piece, strict=True) if t in (0.0, 1.0))
+    for (u, v), piece in pieces.items():
+        if piece is not None:
+            pieces[u, v] = (0.0 if u in kept_ends else piece[0], 1.0 if v in kept_ends else piece[1])
+    return pieces
 
 
 def _kept_piece(u: FloatArray, v: FloatArray, centre: FloatArray, radius: float) -> tuple[float, float] | None:

@@ -152,6 +152,26 @@ class Patch:
         cell = np.prod(np.diff(self._bounds, axis=0) * self.scale) / SAMPLES**2
         return bool(np.sum(np.abs(samples.curvature) * area) * cell < FLATTEST)
 
+    @property
+    def extent(self) -> float:
+        """Size of the face, mm, as its samples tell; infinite or NaN for one that goes on for ever."""
+        return float(np.abs(np.ptp(self.samples.position, axis=0)).max() + np.abs(self.samples.position).max())
+
+    def fewest_triangles(self, chord: float) -> float:
+        """Triangles that a doubly curved face takes at least, within a factor of some ten.
+
+        In a triangle of side l the gap is |K|^1/2 l^2 / 8 or more, and the metric allows sides of 1.
+        """
+        if self.developable:
+            return 0.0
+        samples = self.samples
+        area = np.linalg.norm(np.cross(samples.tangent[:, 0], samples.tangent[:, 1]), axis=1)
+        e, f, g = samples.metric.T
+        by_angle = np.sqrt(np.maximum(e * g - f * f, 0.0))
+        by_chord = area * np.sqrt(np.abs(samples.curvature)) / (8 * chord)
+        cell = float(np.prod(np.diff(self._bounds, axis=0) * self.scale)) / SAMPLES**2
+        return float(np.maximum(by_angle, by_chord).sum() * cell)
+
     @cached_property
     def middle(self) -> Nodes:
         """One node about the middle of the face: where its centre of mass projects, or the sample nearest to it."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import FileError, MouldError
-from meshdrape.mould.files import existing_file, file_sha256
+from meshdrape.mould.files import brief, existing_file, file_sha256
 from meshdrape.mould.meshfile import read_mesh_mould
 from meshdrape.mould.mould import Mould
 
@@ -90,6 +90,10 @@ def read_mould(
         mould = brep_mould(shape, str(file), faces, chord_tolerance, angle_tolerance)
     except MouldError as error:
         msg = f"{file}: {error}"
+        raise MouldError(msg) from error
+    except (ValueError, ArithmeticError, LookupError, MemoryError) as error:
+        # what a damaged file holds in place of geometry nobody foresees
+        msg = f"{file}: its faces cannot be cut into triangles ({brief(error)}); mend them in CAD"
         raise MouldError(msg) from error
     except Exception as error:
         if not type(error).__module__.startswith("OCP"):  # Open CASCADE's own have no base class in common

@@ -46,12 +46,17 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
         edge = edge[facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))]
         if not len(edge):
             return
-        if len(facets.triangles) > MOST_TRIANGLES:
-            msg = f"the mould takes more than {MOST_TRIANGLES} triangles at these tolerances; make them larger"
-            raise MouldError(msg)
+        require_triangles(len(facets.triangles))
         a, b, _, _ = facets.quads(edge)
         middle = (facets.nodes.uv[a] + facets.nodes.uv[b]) / 2
         facets.make_delaunay(facets.split(edge, evaluate(facets.nodes.face[a], middle)))
+
+
+def require_triangles(count: float) -> None:
+    """Raise MouldError if there are to be more triangles than any mould needs."""
+    if count > MOST_TRIANGLES:
+        msg = f"the mould takes more than {MOST_TRIANGLES:,} triangles at these tolerances; make them larger"
+        raise MouldError(msg)
 
 
 def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools) -> Floats:

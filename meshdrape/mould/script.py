@@ -11,7 +11,10 @@ from typing import Any
 
 from meshdrape.errors import FileError
 from meshdrape.mould.files import brief
+from meshdrape.mould.quiet import survives
 from meshdrape.mould.shape import NamedShape, cadquery_module, of_shape
+
+SECONDS_TO_PARSE = 60.0
 
 
 def run_script(path: Path, parameters: Mapping[str, Any] | None = None, origin: str | None = None) -> NamedShape:
@@ -36,8 +39,13 @@ def run_script(path: Path, parameters: Mapping[str, Any] | None = None, origin: 
 
     called = origin or str(path)
     try:
-        model = cqgi.parse(path.read_text(encoding="utf-8"))
-    except (SyntaxError, UnicodeDecodeError, ValueError) as error:
+        text = path.read_text(encoding="utf-8")
+        # the interpreter itself crashes on an expression nested deeply enough
+        if not survives(lambda: compile(text, path.name, "exec"), SECONDS_TO_PARSE):
+            msg = f"{path} is nested too deeply for Python to parse it; write it in smaller expressions"
+            raise FileError(msg)
+        model = cqgi.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f", line {error.lineno}" if isinstance(error, SyntaxError) else ""
         msg = f"{path}{line} is not a Python script: {brief(error)}"
         raise FileError(msg) from error

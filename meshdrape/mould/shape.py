@@ -57,7 +57,7 @@ def read_step(path: Path) -> NamedShape:
         trial = STEPControl_Reader()
         if trial.ReadFile(str(path)) == IFSelect_ReturnStatus.IFSelect_RetDone:
             trial.TransferRoots()
-            trial.OneShape()
+            _look_at(cq.Shape.cast(trial.OneShape()))
 
     _require_survival(path, attempt)
     shape = None
@@ -97,7 +97,7 @@ def read_brep(path: Path) -> NamedShape:
     if not _is_whole(content):
         msg = f"{path} is cut short; export it anew"
         raise FileError(msg)
-    _require_survival(path, lambda: cq.Shape.importBrep(str(path)))
+    _require_survival(path, lambda: _look_at(cq.Shape.importBrep(str(path))))
     try:
         with quiet():
             whole = cq.Shape.importBrep(str(path))
@@ -105,6 +105,14 @@ def read_brep(path: Path) -> NamedShape:
         msg = f"{path} cannot be read as BREP ({type(error).__name__}); export it anew"
         raise FileError(msg) from error
     return of_shape(whole, path)
+
+
+def _look_at(shape: Any) -> None:
+    """Evaluate every face somewhere: Open CASCADE reads some damaged ones and crashes on them, or hangs, afterwards."""
+    from meshdrape.mould.patch import Patch
+
+    for face in shape.Faces():
+        Patch(face.wrapped).middle  # noqa: B018 - what it is does not matter
 
 
 def _require_survival(path: Path, attempt: Callable[[], object]) -> None:

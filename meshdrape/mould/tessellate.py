@@ -15,16 +15,19 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from meshdrape.errors import MouldError
+from meshdrape.mould.check import FARTHEST
 from meshdrape.mould.facets import Facets
 from meshdrape.mould.outline import Outline, Outlines
 from meshdrape.mould.patch import Floats, Ints, Nodes, Patch, Tolerances
-from meshdrape.mould.refine import refine
+from meshdrape.mould.refine import refine, require_triangles
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Face
 
 # A well-shaped facet tilts from its face by six tenths of the turn from node to node.
 MOST_TILT: Final = 1.2
+# The estimate is low, by five times and more on the samples: at this share of the most triangles there may be, no try.
+ESTIMATE: Final = 0.5
 # An outline that crosses itself is divided more finely so often.
 MOST_ATTEMPTS: Final = 6
 
@@ -63,6 +66,12 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
         The outline of a face crosses itself, or the tolerances ask for too many triangles.
     """
     patches = [Patch(face, index, tolerances) for index, face in enumerate(faces)]
+    for patch, number in zip(patches, ids, strict=True):
+        # of a face without an outline only the parameters end
+        if not patch.extent <= FARTHEST:
+            msg = f"face {number} goes on for more than {FARTHEST:g} mm: its outline is missing; mend it in CAD"
+            raise MouldError(msg)
+    require_triangles(sum(patch.fewest_triangles(tolerances.chord) for patch in patches) / ESTIMATE)
     outlines = Outlines(patches, tolerances)
     rings, cuts = _cut(patches, outlines, ids)
     start = np.cumsum([0] + [len(ring.number) for ring in rings])

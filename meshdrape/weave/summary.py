@@ -136,21 +136,19 @@ def _angles(field: MouldField, angle: Any) -> dict[str, float] | None:
 
 
 def _first_places(net: Net) -> dict[str, dict[str, Any]]:
-    """For each outcome that lost fabric, the node nearest to the seed and the place of its placed neighbour."""
+    """For each outcome that lost fabric, the node nearest to the seed and the place of the node next to it."""
     i0, j0 = net.seed_index
     found = {}
+    here = np.argwhere(net.node_status <= NodeStatus.OFF_MOULD)
     for status in (*MISSING, NodeStatus.MET_ITSELF):
         i, j = np.nonzero(net.node_status == status)
         if not len(i):
             continue
         n = int(np.argmin(np.abs(i - i0) + np.abs(j - j0)))
-        # one step back towards the seed lies a parent, and the first to fail has both
-        parent = (
-            (int(i[n] - np.sign(i[n] - i0)), int(j[n])) if i[n] != i0 else (int(i[n]), int(j[n] - np.sign(j[n] - j0)))
-        )
-        place = net.positions(parent[0], parent[0] + 1)[0, parent[1]]
-        near = place.tolist() if np.isfinite(place).all() else None
-        found[status.name] = {"node": [int(i[n] - i0), int(j[n] - j0)], "near": near}
+        # its parents may themselves have gone where the net meets itself
+        a, b = here[np.argmin(np.abs(here - (i[n], j[n])).sum(axis=1))].tolist()
+        place = net.positions(a, a + 1)[0, b]
+        found[status.name] = {"node": [int(i[n] - i0), int(j[n] - j0)], "near": place.tolist()}
     return found
 
 
