@@ -31,12 +31,37 @@ def crease_edges(
     angle_tolerance : float, optional
         Of the tessellation, rad.
     """
-    across = surface.face_neighbour // 3
+    angle = _edge_angle(surface)
+    other = cad_face[surface.face_neighbour // 3]
+    least = np.where(cad_face[:, None] != other, max(CAD_CREASE_ANGLE, 2.0 * (angle_tolerance or 0.0)), CREASE_ANGLE)
+    return np.asarray(angle > np.minimum(least, CREASE_ANGLE))
+
+
+def continued(surface: Surface, crease: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The creases of a mould on its extension too, (m, 3): a crease goes on past the border it ends at.
+
+    Parameters
+    ----------
+    surface : Surface
+        With its extension.
+    crease : (n, 3) bool
+        Of the mould's own faces, which come first.
+    """
+    n = len(crease)
+    on_crease = np.zeros(len(surface.vertices), dtype=np.bool_)
+    face, k = np.nonzero(crease)
+    on_crease[surface.faces[face, k]] = on_crease[surface.faces[face, (k + 1) % 3]] = True
+    outer = surface.faces[n:]
+    touches = on_crease[outer] | on_crease[np.roll(outer, -1, axis=1)]
+    # between two faces of the extension: the border itself is none
+    inner = surface.face_neighbour[n:] >= 3 * n
+    return np.concatenate([crease, touches & inner & (_edge_angle(surface)[n:] > CAD_CREASE_ANGLE)])
+
+
+def _edge_angle(surface: Surface) -> NDArray[np.float64]:
+    """Angle between the normals on both sides of each edge of each face, (m, 3) rad; 0 at a border."""
     inner = surface.face_neighbour >= 0
     normal = surface.face_normal
-    other = normal[np.where(inner, across, 0)]
+    other = normal[np.where(inner, surface.face_neighbour // 3, 0)]
     sine = np.linalg.norm(np.cross(normal[:, None], other), axis=2)
-    angle = np.arctan2(sine, np.einsum("md,mkd->mk", normal, other))
-    parted = cad_face[:, None] != cad_face[np.where(inner, across, 0)]
-    least = np.where(parted, max(CAD_CREASE_ANGLE, 2.0 * (angle_tolerance or 0.0)), CREASE_ANGLE)
-    return np.asarray(inner & (angle > np.minimum(least, CREASE_ANGLE)))
+    return np.asarray(np.where(inner, np.arctan2(sine, np.einsum("md,mkd->mk", normal, other)), 0.0))

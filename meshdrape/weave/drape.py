@@ -71,8 +71,9 @@ def drape(
         Turn of that generator where it first crosses a crease, each half at its own: counter-clockwise as seen from
         the side the cloth lies on (right-handed about the mould's normal), from the straightest way over the crease.
         Nodes keep one spacing along the bent fibre. Rows that do not start beyond the crease do not depend on it, to
-        the bit. A crease is an edge at which the normals of its two triangles differ by more than 20 degrees; between
-        two faces of a CAD file more than 2 degrees, and twice the angle tolerance, suffice. A rounded edge has none.
+        the bit, but for which of their last nodes past the border are kept as a hem. A crease is an edge at which the
+        normals of its two triangles differ by more than 20 degrees; between two faces of a CAD file more than 2
+        degrees, and twice the angle tolerance, suffice. It goes on past the border it ends at. A rounded edge has none.
     warp_path, weft_path : (n, 3) float, mm
         Points of that generator in their order: each projected on the mould, joined by geodesics, with nodes at equal
         arc length along the curve from the seed on, both ways; past its ends the fibre goes straight on. It keeps its

@@ -66,7 +66,7 @@ class Turn:
     angle : float
         Counter-clockwise about the mould's normal, rad.
     crease : (m, 3) bool
-        Edges of the mould's faces at which the fibre may turn.
+        Edges at which the fibre may turn, of the mould's faces or of those with its extension.
     """
 
     angle: float
@@ -203,9 +203,7 @@ def _traced(
     face = np.empty(count, dtype=np.int32)
     xy, out, into = (np.empty((count, 2)) for _ in range(3))
     through = np.zeros(count, dtype=np.bool_)
-    crease = np.zeros((0 if turn is None else len(surface.faces), 3), dtype=np.bool_)
-    if turn is not None:
-        crease[: len(turn.crease)] = turn.crease
+    crease = np.zeros((0, 3), dtype=np.bool_) if turn is None else turn.crease
     code, n, _, turned = trace(
         surface.unfolding, crease, 0.0 if turn is None else turn.angle, *ray, run, spacing, count, face, xy, out, into,
         through,

@@ -11,8 +11,9 @@ from meshdrape.errors import NetError, StartError
 from meshdrape.kernels.emit import border_status
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface, SurfacePoint
+from meshdrape.weave.crease import continued
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.fibre import FAMILY, STRAIGHT, Courses, HalfFibre, straight_half, track_half
+from meshdrape.weave.fibre import FAMILY, STRAIGHT, Courses, HalfFibre, Turn, straight_half, track_half
 from meshdrape.weave.rays import Ray, Rays
 from meshdrape.weave.start import SeedStar, seed_star, star_of_rays
 from meshdrape.weave.status import NodeStatus
@@ -91,12 +92,14 @@ def start_fibres(
     for family, course in enumerate(courses):
         if course.track is not None:
             continue
-        met = False
+        met, turn = False, course.turn
+        if turn is not None:
+            turn = Turn(turn.angle, continued(surface, turn.crease))
         for half in (family, family + 2):
             ray = star.ray(half)
-            halves[half], turned = straight_half(surface, ray, half, spacing[half], counts[half], course.turn)
+            halves[half], turned = straight_half(surface, ray, half, spacing[half], counts[half], turn)
             met |= turned
-        if course.turn is not None and not met:
+        if turn is not None and not met:
             name = FAMILY[family]
             msg = (
                 f"the {name} meets no crease to turn at; move the seed or the direction so that it crosses a sharp "

@@ -67,7 +67,7 @@ def test_plane_sections_as_start_fibres(eps, sine, b):
 def test_shear_from_plane_sections_tends_to_the_formula():
     """(39) in the first order in eps: sin(shear) = 4 a c eps u v, and what remains falls with eps squared."""
     off = [
-        abs(np.sin(corner_shear(eps, 1, 1, 1, spacing=50.0, **plane_sections(eps, 1, 1))) - 4 * eps)
+        abs(np.sin(corner_shear(eps, 1, 1, 1, n=100, spacing=50.0, **plane_sections(eps, 1, 1))) - 4 * eps)
         for eps in (0.04, 0.01)
     ]
     assert np.log2(off[0] / off[1]) / 2 == pytest.approx(2, abs=0.25)
@@ -77,6 +77,6 @@ def test_one_geodesic_and_one_plane_section():
     """The section's own curvature is what shears: each of the two adds half of it, by symmetry."""
     eps = 0.01
     sections = plane_sections(eps, 1, 1)
-    half = [np.sin(corner_shear(eps, 1, 1, 1, **{name: sections[name]})) for name in sections]
+    half = [np.sin(corner_shear(eps, 1, 1, 1, n=100, **{name: sections[name]})) for name in sections]
     assert half[0] == pytest.approx(half[1], rel=1e-6)
     assert half[0] == pytest.approx(SINE_OF_SHEAR[eps] / 2, rel=0.05)

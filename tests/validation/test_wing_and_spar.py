@@ -118,6 +118,22 @@ def test_left_ribbon_that_leaves_the_mould_feeds_its_rows_all_the_same():
     assert np.degrees(np.abs(draped.shear[here]).max()) == pytest.approx(FIGURE_4_TURNED[spacing], abs=0.02)
 
 
+@pytest.mark.parametrize("gamma", [0.0, TURNED, 5.0])
+def test_left_ribbon_along_the_moulds_own_border(gamma):
+    """The sheet laid at the very end: the ribbon crosses the edge at the corner, where the crease leaves the mould.
+
+    The first facet's chord is not tangent to the crease there, so all rows cross at half a facet's turn.
+    """
+    crease, spacing, width = figure_4(), 0.05, 0.5e-3
+    reference = reference_net(crease, spacing, np.radians(gamma))
+    y = np.arange(0, 1.35 + width, width)
+    draped = lay(crease, reference, y, 3.0, 1.2, round(0.5 / spacing) - 1, -np.radians(gamma))
+    here = (reference.region > 0) & np.isfinite(draped.shear)
+    assert here.sum() > 0.95 * (reference.region > 0).sum()
+    assert np.degrees(np.abs(draped.shear - reference.shear)[here].max()) < 0.01
+    assert draped.net.seed == pytest.approx([475, 0, 0], abs=1e-9)
+
+
 @pytest.mark.parametrize("spacing", [0.05, 0.02])
 def test_rows_from_the_wing_do_not_change_by_one_bit(spacing):
     """Whatever the turn: nodes of all rows that start on the wing, and the shear between them.
