@@ -59,7 +59,7 @@ class Patch:
         corners = surface.vertices[surface.faces[faces]]
         if float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()) <= 8 * radius:
             return cls(surface, faces)
-        return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius)
+        return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius, whole=True)
 
     def _add(self, face: int, triangle: tuple[int, int, int]) -> None:
         self._pieces.setdefault(face, []).append(len(self._faces))
@@ -159,10 +159,13 @@ def _cut(
     ends: tuple[SurfacePoint, ...],
     centre: FloatArray,
     radius: float,
+    *,
+    whole: bool = False,
 ) -> Patch:
     """Fill an empty patch with the hull, face by face, of what a ball keeps of the edges, and of the end points.
 
-    A path inside the ball crosses a face between two kept pieces of its edges, or from an end: the hull holds it.
+    A path inside the ball crosses a face between two kept pieces of its edges, or from an end: the hull holds it. What
+    else of a face lies in the ball is held if it meets no edge, or if `whole`, for points to be inserted later.
     """
     number: dict[tuple[int, int, int], int] = {}
 
@@ -190,7 +193,8 @@ def _cut(
         inside = [end.position(surface) for end in ends if end.face == face and end.barycentric.min() > SNAP]
         first = len(patch._vertices)
         frame = surface.unfolding.frame[face]
-        inside += _ball_outline(surface, face, centre, radius)
+        if whole or not ring:
+            inside += _ball_outline(surface, face, centre, radius)
         # an end on an edge gives the face some depth, lest nothing be left of it but that edge
         middle = surface.vertices[surface.faces[face]].mean(axis=0)
         for end in ends:
