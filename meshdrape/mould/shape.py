@@ -10,8 +10,8 @@ from typing import Any
 from meshdrape.errors import FileError, missing_library
 from meshdrape.mould.quiet import quiet, survives
 
-# A file that takes longer than this to read is taken to hang.
-SECONDS_TO_READ = 300.0
+# A file that takes longer than this to read, and so much longer a byte, is taken to hang.
+SECONDS_TO_READ, SECONDS_A_BYTE = 15.0, 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ def _look_at(shape: Any) -> None:
 
 def _require_survival(path: Path, attempt: Callable[[], object]) -> None:
     """Raise FileError for a file damaged so that Open CASCADE crashes on it, or hangs."""
-    if not survives(attempt, SECONDS_TO_READ):
+    if not survives(attempt, SECONDS_TO_READ + SECONDS_A_BYTE * path.stat().st_size):
         msg = f"{path} is damaged: Open CASCADE crashes or hangs reading it; export it anew"
         raise FileError(msg)
 

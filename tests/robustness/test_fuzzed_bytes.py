@@ -19,7 +19,7 @@ from command import CAD, SAMPLES, ascii_stl, binary_stl, obj, off, ply
 
 MESH = bumpy(1, n=4)
 CAD_DAMAGE = ("truncated", "truncated_near_the_end", "flipped", "cut_out", "noise", "zeros", "another_code", "nested")
-SECONDS = 20.0
+SECONDS = 40.0
 MORE_MEMORY = 600  # MiB
 
 
@@ -109,6 +109,7 @@ def test_whole_files_are_read(capfd, tmp_path):
         assert inspected(path, capfd) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cylinder.step", "top.brep", "cylinder.py"])
 def test_cad_file(capfd, tmp_path, name):
     """A process is forked for each file, so that Open CASCADE may crash in it."""
