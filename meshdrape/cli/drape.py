@@ -43,6 +43,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             metavar="FILE",
             help=f"points of the {name} start fibre in mm: x y z a line, or an OBJ line",
         )
+    start.add_argument(
+        "--stop-at", type=degrees, metavar="DEG", help="end the cloth before the first cell sheared by more"
+    )
+    start.add_argument(
+        "--recrossing", action="store_true", help="go on where a fibre comes back over a crease that it crossed"
+    )
     start.add_argument("--flip-normal", action="store_true", help="lay the cloth on the other side of the tool")
     out = parser.add_argument_group("the results")
     out.add_argument(
@@ -101,6 +107,8 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             weft_turn=options.weft_turn_deg,
             warp_path=warp_path,
             weft_path=weft_path,
+            stop_at=options.stop_at,
+            recrossing=options.recrossing,
             threads=options.threads,
             progress=progress.step,
         )

@@ -99,14 +99,14 @@ class Patch:
             If the patch does not hold the point.
         """
         p = np.asarray(position, dtype=np.float64)
-        best = -np.inf
-        piece, weight = -1, np.zeros(3)
         # a point on the edge of a face that was cut away belongs to the face beyond as well
-        for n in self._pieces.get(face, range(len(self._faces))):
-            found = self._barycentric(n, p)
-            if found.min() > best:
-                best, piece, weight = float(found.min()), n, found
-        if best < -1e-6:
+        pieces = self._pieces.get(face) or range(len(self._faces))
+        if not pieces:
+            raise KeyError(face)
+        weights = self._barycentric([self._faces[n] for n in pieces], p)
+        best = int(np.argmax(weights.min(axis=1)))
+        piece, weight = pieces[best], weights[best]
+        if not weight.min() >= -1e-6:
             raise KeyError(face)
         a, b, c = self._faces[piece]
         corner = int(np.argmax(weight))
@@ -129,14 +129,16 @@ class Patch:
         self._replace(piece, [(a, b, new), (b, c, new), (c, a, new)])
         return new, 0.0
 
-    def _barycentric(self, n: int, p: FloatArray) -> FloatArray:
-        a, b, c = (self._vertices[v] for v in self._faces[n])
+    def _barycentric(self, faces: list[tuple[int, int, int]], p: FloatArray) -> FloatArray:
+        """Barycentric coordinates (n, 3) of a point in each of some triangles."""
+        a, b, c = np.moveaxis(np.array([[self._vertices[v] for v in face] for face in faces]), 1, 0)
         u, v, w = b - a, c - a, p - a
         # by cross products: of a needle, products of lengths would leave nothing but round-off
         normal = np.cross(u, v)
-        double2 = normal @ normal
-        beta, gamma = np.cross(w, v) @ normal / double2, np.cross(u, w) @ normal / double2
-        return np.array([1 - beta - gamma, beta, gamma])
+        double2 = np.einsum("ij,ij->i", normal, normal)
+        beta = np.einsum("ij,ij->i", np.cross(w, v), normal) / double2
+        gamma = np.einsum("ij,ij->i", np.cross(u, w), normal) / double2
+        return np.stack([1 - beta - gamma, beta, gamma], axis=1)
 
     def _split_edge(self, n: int, u: int, v: int, new: int) -> None:
         a, b, c = self._faces[n]

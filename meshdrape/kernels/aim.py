@@ -4,7 +4,7 @@ import math
 
 from numba import njit
 
-from meshdrape.kernels.sweep import OFF_MOULD, WARP, keep_edge
+from meshdrape.kernels.edges import OFF_MOULD, WARP, keep_edge
 from meshdrape.kernels.walk import WALKED, turn_into, walk
 
 MAX_TURNS = 40

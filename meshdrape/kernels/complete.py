@@ -9,18 +9,10 @@ import math
 from numba import njit
 
 from meshdrape.kernels.certify import second_route, turned_over
+from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, place
-from meshdrape.kernels.sweep import (
-    FREE_WARP,
-    FREE_WEFT,
-    LOST,
-    OFF_MOULD,
-    UNSURE,
-    WARP,
-    WEFT,
-    edge_ends,
-    keep_edge,
-)
+from meshdrape.kernels.shear import past_stop
+from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, LOST, STOPPED, UNSURE
 from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
 
 OUTSIDE = 2
@@ -150,7 +142,23 @@ def joins_all(mesh, net, start, si, sj, i, j, warp, weft):
 
 @njit(cache=True, error_model="numpy")
 def complete(
-    mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, report
+    mesh,
+    detours,
+    net,
+    start,
+    si,
+    sj,
+    i_first,
+    i_count,
+    j_first,
+    j_count,
+    warp,
+    weft,
+    initial_angle,
+    stop_at,
+    tolerance,
+    slack,
+    report,
 ):
     """Place nodes that no quadrant reached, in the sense (si, sj), in the rectangle from (i_first, j_first) on.
 
@@ -256,5 +264,13 @@ def complete(
                     status[i, j] = MET_ITSELF
                 continue
             status[i, j] = OFF_MOULD if off else PLACED
+            if (
+                stop_at < math.pi
+                and has_a
+                and has_b
+                and past_stop(mesh, net, start, si, sj, i, j, initial_angle, stop_at, warp, weft)
+            ):
+                status[i, j] = STOPPED
+                continue
             report[0] += 1
     return True

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numba import njit
 
+from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_key
 from meshdrape.kernels.generator import VERTEX_AIM, VERTEX_TOUCH, corner_angle, corner_place, turn_about_vertex
-from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT, edge_key
 from meshdrape.kernels.walk import MAX_CROSSINGS
 
 # The end of an edge this near to a mesh edge, in spacings, lies on whichever side its node says: round-off.

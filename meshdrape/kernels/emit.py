@@ -1,11 +1,10 @@
-"""From lattice to space and shear, and what is trimmed at the border."""
+"""From lattice to space, and what is trimmed at the border."""
 
 import math
 
-import numpy as np
 from numba import njit
 
-from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT, edge_ends
+from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends
 from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould
 
 OUTSIDE = 2
@@ -115,85 +114,6 @@ def border_status(mesh, face, xy, slack, out):
         out[n] = OFF_MOULD if off_mould(mesh, face[n], xy[n, 0], xy[n, 1], slack) else 0
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def _angle(px, py, qx, qy):
-    return math.atan2(px * qy - py * qx, px * qx + py * qy)
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
-    """Signed shear of the cells (i, j)-(i + 1, j + 1) of the rows from i_first on, out (rows, n_weft - 1), rad.
-
-    Initial angle less the mean over the four corners of the angle from +warp to +weft, measured in the surface: the
-    corners at (i, j) and (i + 1, j + 1) as they are, the other two as supplements. NaN where a corner is missing.
-    """
-    n_weft = net.status.shape[1]
-    i0 = start.origin[0]
-    j0 = start.origin[1]
-    # weft edges of the row below, both ends
-    below = np.empty((n_weft, 4))
-    above = np.empty((n_weft, 4))
-    above_row = -1
-    for a in range(out.shape[0]):
-        i = i_first + a
-        reuse = above_row == i
-        if reuse:
-            below, above = above, below
-        above_row = i + 1
-        for j in range(n_weft - 1):
-            f = net.face[i, j]
-            placed = net.status[i, j] <= OFF_MOULD and net.status[i, j + 1] <= OFF_MOULD
-            placed_above = net.status[i + 1, j] <= OFF_MOULD and net.status[i + 1, j + 1] <= OFF_MOULD
-            if not (placed and placed_above):
-                out[a, j] = math.nan
-                if placed_above:
-                    px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i + 1, j, 1, weft)
-                    above[j, 0] = px
-                    above[j, 1] = py
-                    above[j, 2] = qx
-                    above[j, 3] = qy
-                continue
-            g = net.face[i + 1, j]
-            one_face = f == g and f == net.face[i, j + 1] and f == net.face[i + 1, j + 1]
-            if one_face:
-                px = net.xy[i + 1, j, 0] - net.xy[i, j, 0]
-                py = net.xy[i + 1, j, 1] - net.xy[i, j, 1]
-                qx = net.xy[i, j + 1, 0] - net.xy[i, j, 0]
-                qy = net.xy[i, j + 1, 1] - net.xy[i, j, 1]
-                out[a, j] = initial_angle - _angle(px, py, qx, qy)
-                # the row above asks for this edge again if it needs it: it must not matter where a block begins
-                above[j, 0] = math.nan
-                continue
-            if not reuse or math.isnan(below[j, 0]):
-                px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i, j, 1, weft)
-                below[j, 0] = px
-                below[j, 1] = py
-                below[j, 2] = qx
-                below[j, 3] = qy
-            px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i + 1, j, 1, weft)
-            above[j, 0] = px
-            above[j, 1] = py
-            above[j, 2] = qx
-            above[j, 3] = qy
-            ax, ay, bx, by = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
-            cx, cy, dx, dy = edge_ends(mesh, net, start, WARP, i, j + 1, 1, warp)
-            total = _angle(ax, ay, below[j, 0], below[j, 1])
-            total += _angle(dx, dy, above[j, 2], above[j, 3])
-            total += _angle(bx, by, above[j, 0], above[j, 1])
-            total += _angle(cx, cy, below[j, 2], below[j, 3])
-            # the seed's own corner is its share of the star's angle, whatever the frames say
-            if (i == i0 or i + 1 == i0) and (j == j0 or j + 1 == j0):
-                if i == i0 and j == j0:
-                    total += start.sector[0] - _angle(ax, ay, below[j, 0], below[j, 1])
-                elif j == j0:
-                    total += math.pi - start.sector[1] - _angle(bx, by, above[j, 0], above[j, 1])
-                elif i == i0:
-                    total += math.pi - start.sector[3] - _angle(cx, cy, below[j, 2], below[j, 3])
-                else:
-                    total += start.sector[2] - _angle(dx, dy, above[j, 2], above[j, 3])
-            out[a, j] = initial_angle - 0.25 * total
-
-
 @njit(cache=True, error_model="numpy")
 def _crosses_mould(mesh, face, x, y, dx, dy, length):
     """Whether the straight path from (x, y) touches a face of the mould."""
@@ -231,33 +151,50 @@ def _crosses_mould(mesh, face, x, y, dx, dy, length):
 @njit(cache=True, error_model="numpy", nogil=True)
 def touching_cells(mesh, net, start, i_first, warp, weft, out):
     """Whether each whole cell touches the mould, by a corner or an edge; rows from i_first, out (rows, n_weft - 1)."""
-    n_weft = net.status.shape[1]
+    _touching_by_corner(net.status, i_first, out)
+    status = net.status
+    face = net.face
     for a in range(out.shape[0]):
         i = i_first + a
-        for j in range(n_weft - 1):
-            low = 255
-            high = 0
-            for s in (net.status[i, j], net.status[i + 1, j], net.status[i, j + 1], net.status[i + 1, j + 1]):
-                low = min(low, s)
-                high = max(high, s)
-            out[a, j] = False
-            if high > OFF_MOULD:
-                continue
-            if low == 0:
-                out[a, j] = True
-                continue
-            for step in range(4):
-                if step < 2:
-                    k = j + step
-                    dx, dy, _, _ = edge_ends(mesh, net, start, WARP, i, k, 1, warp)
-                    hit = _crosses_mould(mesh, net.face[i, k], net.xy[i, k, 0], net.xy[i, k, 1], dx, dy, warp)
-                else:
-                    k = i + step - 2
-                    dx, dy, _, _ = edge_ends(mesh, net, start, WEFT, k, j, 1, weft)
-                    hit = _crosses_mould(mesh, net.face[k, j], net.xy[k, j, 0], net.xy[k, j, 1], dx, dy, weft)
-                if hit:
-                    out[a, j] = True
-                    break
+        for j in range(out.shape[1]):
+            if (
+                status[i, j] == OFF_MOULD
+                and status[i + 1, j] == OFF_MOULD
+                and status[i, j + 1] == OFF_MOULD
+                and status[i + 1, j + 1] == OFF_MOULD
+                # an edge inside one face off the mould crosses nothing
+                and not (face[i, j] == face[i + 1, j] == face[i, j + 1] == face[i + 1, j + 1])
+            ):
+                out[a, j] = _touches_by_edge(mesh, net, start, i, j, warp, weft)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _touching_by_corner(status, i_first, out):
+    """Whether each cell is whole and has a corner on the mould: on its own, the loop runs many cells at a time."""
+    for a in range(out.shape[0]):
+        below = status[i_first + a]
+        above = status[i_first + a + 1]
+        for j in range(out.shape[1]):
+            high = max(max(below[j], below[j + 1]), max(above[j], above[j + 1]))
+            low = min(min(below[j], below[j + 1]), min(above[j], above[j + 1]))
+            out[a, j] = (high <= OFF_MOULD) & (low == 0)
+
+
+@njit(cache=True, error_model="numpy")
+def _touches_by_edge(mesh, net, start, i, j, warp, weft):
+    """Whether an edge of a cell off the mould crosses a corner of it."""
+    for step in range(4):
+        if step < 2:
+            k = j + step
+            dx, dy, _, _ = edge_ends(mesh, net, start, WARP, i, k, 1, warp)
+            hit = _crosses_mould(mesh, net.face[i, k], net.xy[i, k, 0], net.xy[i, k, 1], dx, dy, warp)
+        else:
+            k = i + step - 2
+            dx, dy, _, _ = edge_ends(mesh, net, start, WEFT, k, j, 1, weft)
+            hit = _crosses_mould(mesh, net.face[k, j], net.xy[k, j, 0], net.xy[k, j, 1], dx, dy, weft)
+        if hit:
+            return True
+    return False
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numba import njit
 
+from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT
 from meshdrape.kernels.emit import node_tangent
-from meshdrape.kernels.sweep import OFF_MOULD, WARP, WEFT
 
 MAX_STEPS = 80
 # Corners on a plane turned by more than this from the point's own say nothing of its fibres.

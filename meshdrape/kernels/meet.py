@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from meshdrape.kernels.sweep import OFF_MOULD
+from meshdrape.kernels.edges import OFF_MOULD
 
 MET_ITSELF = 4
 # Sheets are told apart by how far they lie from each other across the mould, in spacings, and by their normals.

@@ -6,14 +6,13 @@ import numpy as np
 from numba import njit
 
 from meshdrape.kernels.certify import second_route, turned_over
+from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, FOLD_SINE, NOT_CONVERGED, OUTSIDE, PLACED, place
-from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
+from meshdrape.kernels.shear import past_stop
+from meshdrape.kernels.walk import WALKED, off_mould, walk
 
-OFF_MOULD = 1
+STOPPED = 5
 NOT_REACHED = 8
-
-WARP = 0
-WEFT = 1
 
 # Why a tile stopped at a node that has place and edges: its edges may not be the shortest; or it is held by one fibre
 # alone, a warp or a weft, whose edge may not be.
@@ -23,108 +22,11 @@ FREE_WARP = 2
 FREE_WEFT = 3
 
 
-@njit(cache=True, error_model="numpy")
-def edge_key(net, family, i, j):
-    """Number of the edge kept at [i, j] of its family."""
-    return 2 * (i * net.status.shape[1] + j) + family
-
-
-@njit(cache=True, error_model="numpy")
-def edge_ends(mesh, net, start, family, i, j, step, length):
-    """Direction of the edge from (i, j) to its neighbour `step` (+1 or -1) on, at both ends, each in its node's frame.
-
-    Returns (dx, dy, ex, ey): leaving (i, j), arriving at the neighbour. Only the seed's side is kept of an edge,
-    so the other end is walked to, unless one face holds both.
-    """
-    i0 = start.origin[0]
-    j0 = start.origin[1]
-    if family == WARP:
-        i2 = i + step
-        j2 = j
-        outward = (i2 > i0) == (step > 0) and (i2 - i0) != 0
-        lower_i = min(i, i2)
-        ox = net.warp_out[lower_i, j, 0]
-        oy = net.warp_out[lower_i, j, 1]
-    else:
-        i2 = i
-        j2 = j + step
-        outward = (j2 > j0) == (step > 0) and (j2 - j0) != 0
-        lower_j = min(j, j2)
-        ox = net.weft_out[i, lower_j, 0]
-        oy = net.weft_out[i, lower_j, 1]
-    if outward:
-        ti = i
-        tj = j
-        hi = i2
-        hj = j2
-    else:
-        ti = i2
-        tj = j2
-        hi = i
-        hj = j
-    tail_face = net.face[ti, tj]
-    head_face = net.face[hi, hj]
-    sx = ox
-    sy = oy
-    # on a generator, which a vertex may have turned on its way?
-    half = -1
-    order = 0
-    if family == WARP and j == j0:
-        half = 0 if hi > ti else 2
-        order = abs(hi - i0)
-    elif family == WEFT and i == i0:
-        half = 1 if hj > tj else 3
-        order = abs(hj - j0)
-    if half >= 0 and order <= start.n_nodes[half]:
-        ex = start.arrival[half, order - 1, 0]
-        ey = start.arrival[half, order - 1, 1]
-    elif ox * ox + oy * oy > 2.0:
-        # a bent edge: twice a unit vector marks it
-        at = np.searchsorted(start.bent_key, edge_key(net, family, min(ti, hi), min(tj, hj)))
-        sx = start.bent_ends[at, 0]
-        sy = start.bent_ends[at, 1]
-        ex = start.bent_ends[at, 2]
-        ey = start.bent_ends[at, 3]
-    elif tail_face == head_face:
-        ex = ox
-        ey = oy
-    else:
-        _, face, _, _, ex, ey = walk(
-            mesh.plane, mesh.neighbour, tail_face, net.xy[ti, tj, 0], net.xy[ti, tj, 1], ox, oy, length
-        )
-        ex, ey = turn_into(mesh.plane, mesh.neighbour, mesh.frame, face, ex, ey, head_face)
-    if outward:
-        return sx, sy, ex, ey
-    return -ex, -ey, -sx, -sy
-
-
-@njit(cache=True, error_model="numpy")
-def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
-    """Keep the edge from (i, j) to its neighbour: (dx, dy) leaves (i, j), (ex, ey) arrives at the neighbour."""
-    if family == WARP:
-        i2 = i + step
-        k = min(i, i2)
-        if (i2 > start.origin[0]) == (step > 0) and i2 != start.origin[0]:
-            net.warp_out[k, j, 0] = dx
-            net.warp_out[k, j, 1] = dy
-        else:
-            net.warp_out[k, j, 0] = -ex
-            net.warp_out[k, j, 1] = -ey
-    else:
-        j2 = j + step
-        k = min(j, j2)
-        if (j2 > start.origin[1]) == (step > 0) and j2 != start.origin[1]:
-            net.weft_out[i, k, 0] = dx
-            net.weft_out[i, k, 1] = dy
-        else:
-            net.weft_out[i, k, 0] = -ex
-            net.weft_out[i, k, 1] = -ey
-
-
 @njit(cache=True, error_model="numpy", nogil=True)
 def sweep(
-    mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count, warp, weft, tolerance, slack, every, report
-):
+    mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count,
+    warp, weft, initial_angle, stop_at, tolerance, slack, every, report,
+):  # fmt: skip
     """Place the nodes (i_first + si a, j_first + sj b) of one tile, 0 <= a < i_count, 0 <= b < j_count.
 
     A node has two parents, A one step back along the warp and B one step back along the weft, and the node D that
@@ -140,6 +42,8 @@ def sweep(
         Sense of the sweep, +1 or -1; parents at i_first - si and j_first - sj must be valid indices.
     warp, weft : float
         Spacing, mm.
+    initial_angle, stop_at : float
+        A node whose cell is sheared by more than `stop_at` from the initial angle is STOPPED, rad; pi for never.
     tolerance : float
         Largest gap between the ends of a node's two edges, mm.
     slack : float
@@ -177,6 +81,10 @@ def sweep(
     j0 = start.origin[1]
     tolerance2 = tolerance * tolerance
     side = float(si * sj)
+    stopping = stop_at < math.pi
+    angle = initial_angle if side > 0.0 else math.pi - initial_angle
+    least = math.cos(min(angle + stop_at, math.pi)) if stopping else -2.0
+    most = math.cos(max(angle - stop_at, 0.0)) if stopping else 2.0
     for a in range(i_count):
         i = i_first + si * a
         ia = i - si
@@ -245,6 +153,7 @@ def sweep(
                     and plane[fa, 3] * x + plane[fa, 4] * y >= plane[fa, 5]
                     and plane[fa, 6] * x + plane[fa, 7] * y >= plane[fa, 8]
                     and (ux * vy - uy * vx) * side > FOLD_SINE
+                    and not (stopping and not least <= ux * vx + uy * vy <= most)
                 ):
                     face[i, j] = fa
                     xy[i, j, 0] = x
@@ -341,6 +250,12 @@ def sweep(
                 known = True
                 rx = px
                 ry = py
+                if stopping and past_stop(mesh, net, start, si, sj, i, j, initial_angle, stop_at, warp, weft):
+                    report[0] -= 1
+                    status[i, j] = STOPPED
+                    arrived[b, 0] = 0.0
+                    arrived[b, 1] = 0.0
+                    known = False
             else:
                 known = False
                 if code != DOUBTED and status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD and not every:

@@ -80,9 +80,15 @@ def walk(plane, neighbour, face, x, y, dx, dy, length):
         if exit_edge > 2:
             exit_edge -= 3
         at = 3 * exit_edge
-        height = plane[face, at] * (x + length * dx) + plane[face, at + 1] * (y + length * dy) - plane[face, at + 2]
-        if height >= 0.0:
-            return WALKED, face, x, y, dx, dy
+        tx = x + length * dx
+        ty = y + length * dy
+        if plane[face, at] * tx + plane[face, at + 1] * ty - plane[face, at + 2] >= 0.0:
+            # along an edge it is round-off that chose the side; what counts is whether the end lies in the face
+            other = 3 - entered - exit_edge
+            at = 3 * other
+            if plane[face, at] * tx + plane[face, at + 1] * ty - plane[face, at + 2] >= 0.0:
+                return WALKED, face, x, y, dx, dy
+            exit_edge = other
     return LEFT_SURFACE, face, x, y, dx, dy
 
 

@@ -44,7 +44,7 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
                     count = (rows[1] - rows[0], columns[1] - columns[0])
                     while not complete(
                         mesh, surface.detours, lattice, judge.start, *sense, first[0], count[0], first[1], count[1],
-                        *spacing, tolerance, slack, report,
+                        *spacing, fabric.initial_angle, judge.stop_at, tolerance, slack, report,
                     ):  # fmt: skip
                         i, j, why = (int(v) for v in report[2:])
                         judge.decide((i, j), why, sense)

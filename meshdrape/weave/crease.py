@@ -31,6 +31,13 @@ def crease_edges(
     angle_tolerance : float, optional
         Of the tessellation, rad.
     """
+    kept: dict[float | None, NDArray[np.bool_]] = vars(surface).setdefault("_crease_edges", {})
+    if angle_tolerance not in kept:
+        kept[angle_tolerance] = _crease_edges(surface, cad_face, angle_tolerance)
+    return kept[angle_tolerance]
+
+
+def _crease_edges(surface: Surface, cad_face: NDArray[np.int64], angle_tolerance: float | None) -> NDArray[np.bool_]:
     angle = _edge_angle(surface)
     other = cad_face[surface.face_neighbour // 3]
     least = np.where(cad_face[:, None] != other, max(CAD_CREASE_ANGLE, 2.0 * (angle_tolerance or 0.0)), CREASE_ANGLE)
@@ -63,5 +70,6 @@ def _edge_angle(surface: Surface) -> NDArray[np.float64]:
     inner = surface.face_neighbour >= 0
     normal = surface.face_normal
     other = normal[np.where(inner, surface.face_neighbour // 3, 0)]
-    sine = np.linalg.norm(np.cross(normal[:, None], other), axis=2)
-    return np.asarray(np.where(inner, np.arctan2(sine, np.einsum("md,mkd->mk", normal, other)), 0.0))
+    # the chord between two unit vectors is twice the sine of half their angle: sharp for small angles too
+    chord = np.linalg.norm(other - normal[:, None], axis=2)
+    return np.asarray(np.where(inner, 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)), 0.0))

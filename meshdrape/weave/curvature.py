@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels import crossings
-from meshdrape.kernels.sweep import WARP
+from meshdrape.kernels.edges import WARP
 from meshdrape.surface import Surface
 from meshdrape.weave.net import Net
 

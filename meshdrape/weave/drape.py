@@ -12,12 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
 from meshdrape.surface import Surface
+from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.fibre import Course, Track
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net
 from meshdrape.weave.prescribed import prescribe, tracks_on, turns_on
+from meshdrape.weave.recross import end_where_recrossed
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -41,6 +43,8 @@ def drape(
     weft_turn: float | None = None,
     warp_path: ArrayLike | None = None,
     weft_path: ArrayLike | None = None,
+    stop_at: float | None = None,
+    recrossing: bool = False,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Net:
@@ -79,6 +83,12 @@ def drape(
         arc length along the curve from the seed on, both ways; past its ends the fibre goes straight on. It keeps its
         own geodesic curvature, so its edges are arcs whose ends lie nearer than one spacing. The other generator
         crosses it straight at the initial angle, unless it has a path of its own: then at the angle as drawn.
+    stop_at : float, rad
+        The cloth ends, cell by cell, before the first that would be sheared by more: STOPPED.
+    recrossing : bool
+        Go on where a fibre comes back over a crease that it crossed, by at least half a spacing, instead of ending it
+        there as RECROSSED: a sheet laid undeformed on one side has no such fibre. A crease that closes on itself,
+        round a boss, may always be crossed twice.
     threads : int
         Default the number of cores. The net does not depend on it.
     progress : callable
@@ -115,6 +125,9 @@ def drape(
         )
         raise FabricError(msg)
     extent = _checked_extent(extent)
+    if stop_at is not None and not stop_at > 0:
+        msg = f"the cloth cannot stop at a shear of {math.degrees(stop_at):g} degrees; give one above 0"
+        raise StartError(msg)
     given = prescribe(warp_turn, weft_turn, warp_path, weft_path)
     drawn = given.paths[0] if given.paths[0] is not None else given.paths[1]
     whole = mould.surface
@@ -154,10 +167,22 @@ def drape(
         direction = default_direction(part, point.face)
     courses = (Course(turns[0], tracks[0]), Course(turns[1], tracks[1]))
     laid = lay(
-        part, fabric, point, direction, extent, threads, progress, courses=courses, settle_every=engine == "libigl"
+        part,
+        fabric,
+        point,
+        direction,
+        extent,
+        threads,
+        progress,
+        courses=courses,
+        stop_at=math.pi if stop_at is None else stop_at,
+        settle_every=engine == "libigl",
     )
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
+    if not recrossing:
+        crease = crease_edges(part, mould.triangle_face[part_face], mould.angle_tolerance)
+        end_where_recrossed(part, crease, surface, fabric, lattice, start, threads)
     trim(surface, fabric, lattice, start, threads)
     frame = surface.unfolding.frame[start.face[0]]
     return Net(
@@ -174,6 +199,7 @@ def drape(
         start_fibres=given,
         notes=tuple(notes),
         settled_by_libigl=laid.settled,
+        libigl_seconds=laid.seconds,
         threads=threads,
     )
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, UNSURE, WARP, WEFT, edge_ends, edge_key, keep_edge
+from meshdrape.kernels.edges import WARP, WEFT, edge_ends, edge_key, keep_edge
+from meshdrape.kernels.shear import past_stop
+from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, UNSURE
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.kernels.walk import off_mould
 from meshdrape.surface import Surface
@@ -34,13 +37,26 @@ class Judge:
         done before it began, so it does not matter that the table is replaced while another runs.
     settled : int
         Nodes that libigl placed.
+    seconds : float
+        Spent on these nodes, added up over the threads.
+    stop_at : float
+        Shear at which the cloth stops, rad; pi for never.
     """
 
     def __init__(
-        self, surface: Surface, fabric: Fabric, lattice: Lattice, start: Start, *, settle_every: bool = False
+        self,
+        surface: Surface,
+        fabric: Fabric,
+        lattice: Lattice,
+        start: Start,
+        *,
+        stop_at: float = np.pi,
+        settle_every: bool = False,
     ) -> None:
         self.start = start
         self.settled = 0
+        self.seconds = 0.0
+        self.stop_at = stop_at
         self._surface, self._fabric, self._lattice = surface, fabric, lattice
         self._settle_every = settle_every
         self._slack = border_slack(fabric)
@@ -49,12 +65,15 @@ class Judge:
     def decide(self, node: tuple[int, int], why: int, sense: Sense) -> None:
         """Give a node (i, j) a place and its status for good; `why` is what the kernel reported."""
         i, j = node
+        begun = time.perf_counter()
         if why in (FREE_WARP, FREE_WEFT):
             self._judge_free(i, j, sense, WARP if why == FREE_WARP else WEFT)
         elif why == UNSURE and not self._settle_every:
             self._judge(i, j, sense)
         else:
             self._settle(i, j, sense)
+        with self._lock:
+            self.seconds += time.perf_counter() - begun
 
     def _judge_free(self, i: int, j: int, sense: Sense, family: int) -> None:
         """Keep a node that one fibre alone holds, straight on, if there is no shorter way to it; else end it there."""
@@ -73,7 +92,7 @@ class Judge:
         if all(
             shortest(self._surface, end, node, size) for end, size in zip((search.a, search.b), lengths, strict=True)
         ):
-            self._keep(i, j)
+            self._keep_cell(i, j, sense)
             return
         found = search.run(node, float(sense[0] * sense[1]))
         if found is None:
@@ -131,6 +150,16 @@ class Judge:
         off = off_mould(self._surface.unfolding, *self._place((i, j)), self._slack)
         self._lattice.status[i, j] = NodeStatus.OFF_MOULD if off else NodeStatus.PLACED
 
+    def _keep_cell(self, i: int, j: int, sense: Sense) -> None:
+        """Keep a node unless the cloth stops at its cell."""
+        fabric, mesh = self._fabric, self._surface.unfolding
+        self._keep(i, j)
+        if self.stop_at < np.pi and past_stop(
+            mesh, self._lattice, self.start, *sense, i, j,
+            fabric.initial_angle, self.stop_at, fabric.warp_spacing, fabric.weft_spacing,
+        ):  # fmt: skip
+            self._lattice.status[i, j] = NodeStatus.STOPPED
+
     def _write(self, i: int, j: int, sense: Sense, found: Settled) -> None:
         lattice = self._lattice
         lattice.face[i, j], lattice.xy[i, j] = found.place[0], found.place[1:]
@@ -141,7 +170,7 @@ class Judge:
             keep_edge(lattice, self.start, family, *parent, step, *edge.leave, *edge.arrive)
             if edge.bent:
                 self._keep_bent(family, (i, j), parent, edge)
-        self._keep(i, j)
+        self._keep_cell(i, j, sense)
         with self._lock:
             self.settled += 1
 

@@ -46,13 +46,17 @@ SCOUT_FROM, SCOUT_NODES = 150_000, 8_000
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """A sheet as it was laid: the extended surface, the lattice on it, and the nodes that libigl had to settle."""
+    """A sheet as it was laid: the extended surface, how deep its collar is (mm), and the lattice on it.
+
+    With the number of nodes that libigl placed and the seconds it took over those and over judging others.
+    """
 
     surface: Surface
     collar_depth: float
     lattice: Lattice
     start: Start
     settled: int
+    seconds: float
 
 
 def lay(
@@ -65,6 +69,7 @@ def lay(
     progress: Callable[[int], None] | None = None,
     *,
     courses: Courses = STRAIGHT,
+    stop_at: float = np.pi,
     settle_every: bool = False,
 ) -> Laid:
     """Lay a sheet from a seed point of a connected surface, without an end where it meets itself, untrimmed.
@@ -78,6 +83,8 @@ def lay(
         Of the warp.
     courses : (warp, weft)
         How the start fibres run.
+    stop_at : float
+        Shear of a cell at which the cloth ends, rad.
     settle_every : bool
         Have libigl place every node.
     extent : (warp-, warp+, weft-, weft+), mm, optional
@@ -100,14 +107,14 @@ def lay(
         check_memory(int(cells), 1, fabric, memory)
         scale = float(np.sqrt(cells / SCOUT_NODES))
         coarse = Fabric((scale * fabric.warp_spacing, scale * fabric.weft_spacing), fabric.initial_angle)
-        reach = _reach(lay(part, coarse, point, direction, extent, threads, courses=courses), coarse)
+        reach = _reach(lay(part, coarse, point, direction, extent, threads, courses=courses, stop_at=stop_at), coarse)
     star, halves = start_fibres(surface, fabric, point, direction, counts, memory, courses)
     lattice, start = lay_generators(surface, fabric, star, halves, counts, memory, reach)
-    settled = 0
+    settled, seconds = 0, 0.0
     while True:
-        judge = Judge(surface, fabric, lattice, start, settle_every=settle_every)
+        judge = Judge(surface, fabric, lattice, start, stop_at=stop_at, settle_every=settle_every)
         fill(surface, fabric, lattice, judge, threads, progress, settle_every=settle_every)
-        start, settled = judge.start, settled + judge.settled
+        start, settled, seconds = judge.start, settled + judge.settled, seconds + judge.seconds
         grow = _room_wanted(lattice, start, counts)
         if not any(grow):
             break
@@ -117,15 +124,15 @@ def lay(
         trim(surface, fabric, lattice, start, threads, hem=0)
         start = _generators_cut(lattice, start)
         while True:
-            judge = Judge(surface, fabric, lattice, start, settle_every=settle_every)
+            judge = Judge(surface, fabric, lattice, start, stop_at=stop_at, settle_every=settle_every)
             fill_bays(surface, fabric, lattice, judge)
-            start, settled = judge.start, settled + judge.settled
+            start, settled, seconds = judge.start, settled + judge.settled, seconds + judge.seconds
             grow = _room_wanted(lattice, start, counts)
             if not any(grow):
                 break
             lattice, start = _grown(lattice, start, grow, fabric, memory)
             lattice.status[lattice.status == NodeStatus.NOT_REACHED] = NodeStatus.OUTSIDE
-    return Laid(surface, depth, lattice, start, settled)
+    return Laid(surface, depth, lattice, start, settled, seconds)
 
 
 def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:

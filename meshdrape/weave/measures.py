@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels import emit
+from meshdrape.kernels.shear import cell_shear
 from meshdrape.weave.net import Net
 from meshdrape.weave.status import NodeStatus
 
@@ -127,7 +128,7 @@ def measure(net: Net) -> Measures:
     touching = np.empty(shear.shape, dtype=np.bool_)
     if shear.size:
         net.in_threads(
-            emit.cell_shear,
+            cell_shear,
             [
                 (
                     mesh,

@@ -48,6 +48,10 @@ class Net:
         What was prescribed of the generators.
     notes : tuple of str
         What the user should know of how the net was laid.
+    settled_by_libigl : int
+        Nodes placed from libigl's distances.
+    libigl_seconds : float
+        What these took, and judging nodes near convex vertices, added up over the threads.
     threads : int
     """
 
@@ -64,6 +68,7 @@ class Net:
     start_fibres: StartFibres = field(default_factory=StartFibres)
     notes: tuple[str, ...] = ()
     settled_by_libigl: int = 0
+    libigl_seconds: float = 0.0
     threads: int = field(default=1, repr=False)
 
     @property

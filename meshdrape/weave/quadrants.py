@@ -69,7 +69,8 @@ def fill(
         count_i, count_j = min(TILE, span_i - tile.a * TILE), min(TILE, span_j - tile.b * TILE)
         while not sweep(
             mesh, surface.detours, lattice, judge.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
-            fabric.warp_spacing, fabric.weft_spacing, tolerance, slack, settle_every, report,
+            fabric.warp_spacing, fabric.weft_spacing, fabric.initial_angle, judge.stop_at,
+            tolerance, slack, settle_every, report,
         ):  # fmt: skip
             i, j, why = (int(v) for v in report[2:])
             judge.decide((i, j), why, (tile.si, tile.sj))

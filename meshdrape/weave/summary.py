@@ -94,6 +94,7 @@ def summarise(
         "statuses": {status.name: net.count(status) for status in NodeStatus if net.count(status)},
         "first_places": _first_places(net),
         "nodes_by_libigl": net.settled_by_libigl,
+        "libigl_seconds": round(net.libigl_seconds, 3),
         "audit_max_relative_error": audit.max_relative_error,
         "audit": asdict(audit),
         "mesh_noise_deg": math.degrees(noise),

@@ -10,7 +10,7 @@ from moulds import bumpy, hypar, plate, wing_spar
 from references import Crease, CreaseNet
 
 import meshdrape
-from meshdrape.kernels.sweep import WARP, WEFT, edge_ends
+from meshdrape.kernels.edges import WARP, WEFT, edge_ends
 from meshdrape.weave.balance import balance
 from meshdrape.weave.curvature import enclosed_curvature
 
