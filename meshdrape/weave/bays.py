@@ -31,6 +31,7 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
     spacing = (fabric.warp_spacing, fabric.weft_spacing)
     mesh = surface.unfolding
     report = np.zeros(5, dtype=np.int64)
+    refused: list[tuple[int, int]] = []
     for _ in range(MOST_PASSES):
         before = int(report[0])
         for turn in TURNS:
@@ -48,10 +49,16 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
                     ):  # fmt: skip
                         i, j, why = (int(v) for v in report[2:])
                         judge.decide((i, j), why, sense)
-                        if lattice.status[i, j] <= NodeStatus.OFF_MOULD:
+                        if lattice.status[i, j] == NodeStatus.OUTSIDE:
+                            # not to be tried again from there
+                            lattice.status[i, j] = NodeStatus.NOT_CONVERGED
+                            refused.append((i, j))
+                        elif lattice.status[i, j] <= NodeStatus.OFF_MOULD:
                             if joins_all(mesh, lattice, judge.start, *sense, i, j, *spacing):
                                 report[0] += 1
                             else:
                                 lattice.status[i, j] = NodeStatus.MET_ITSELF
         if int(report[0]) == before:
-            return
+            break
+    for node in refused:
+        lattice.status[node] = NodeStatus.OUTSIDE

@@ -27,6 +27,11 @@ Sense = tuple[int, int]
 """Which way a kernel went through the lattice, +1 or -1 along warp and weft: a node's parents lie one step back."""
 
 
+# How much longer than its edges the paths are among which a node is looked for: one judged is all but right, one
+# that straight paths nearly reached is not far.
+JUDGED, NEARLY = 0.02, 0.3
+
+
 class Judge:
     """Decides the nodes at which a kernel stopped.
 
@@ -86,7 +91,7 @@ class Judge:
 
     def _judge(self, i: int, j: int, sense: Sense) -> None:
         """Keep a node if there is no shorter way from either parent; else find the one that has none."""
-        search = self._search(i, j, sense, narrow=True)
+        search = self._search(i, j, sense, JUDGED)
         node = self._place((i, j))
         lengths = (self._fabric.warp_spacing, self._fabric.weft_spacing)
         if all(
@@ -103,8 +108,11 @@ class Judge:
     def _settle(self, i: int, j: int, sense: Sense) -> None:
         """Find a node that straight paths did not close on; without one the cloth folds there."""
         lattice, side = self._lattice, float(sense[0] * sense[1])
-        search, guess = self._search(i, j, sense), self._place((i, j))
-        found = search.run(guess, side)
+        guess = self._place((i, j))
+        found = self._search(i, j, sense, NEARLY).run(guess, side)
+        if found is None:
+            search = self._search(i, j, sense)
+            found = search.run(guess, side)
         beyond = bool(
             lattice.status[i - sense[0], j] == NodeStatus.OFF_MOULD
             and lattice.status[i, j - sense[1]] == NodeStatus.OFF_MOULD
@@ -135,12 +143,12 @@ class Judge:
             turns = turns[1:]
         return min(side * turn for turn in turns) <= 0
 
-    def _search(self, i: int, j: int, sense: Sense, *, narrow: bool = False) -> NodeSearch:
+    def _search(self, i: int, j: int, sense: Sense, slack: float | None = None) -> NodeSearch:
         fabric = self._fabric
         a, b = self._place((i - sense[0], j)), self._place((i, j - sense[1]))
         # where a kernel gave up, it left the end of the warp edge's path
         guess = self._place((i, j))
-        return NodeSearch(self._surface, a, b, fabric.warp_spacing, fabric.weft_spacing, guess, narrow=narrow)
+        return NodeSearch(self._surface, a, b, fabric.warp_spacing, fabric.weft_spacing, guess, slack=slack)
 
     def _place(self, at: tuple[int, int]) -> Place:
         x, y = self._lattice.xy[at]

@@ -16,9 +16,8 @@ from meshdrape.weave.settle import NodeSearch, Place, Settled, insert, step_from
 
 FloatArray = NDArray[np.float64]
 
-# Directions tried about a parent, and halvings of the angle between two where the distance passes the spacing.
+# Directions tried about a parent.
 DIRECTIONS = 72
-HALVINGS = 12
 # A path that libigl finds shorter than the circle's radius by more than this share is no radius.
 NO_RADIUS = 1e-9
 # A point this near to the cell's known corner, in spacings, is that corner.
@@ -69,18 +68,10 @@ def _crossings(search: NodeSearch) -> Iterator[Place]:
                 if start is not None:
                     yield start
             continue
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            ((there, miss),) = _misses(search, np.array([middle]))
-            if there is None or not np.isfinite(miss):
-                break
-            place = there
-            if miss * before > 0:
-                low = middle
-            else:
-                high = middle
-        if place is not None:
-            yield place
+        # the search closes in from where the chord between the two passes zero
+        turn = low + (high - low) * before / (before - after)
+        ((there, miss),) = _misses(search, np.array([turn]))
+        yield from (start for start in (there if np.isfinite(miss) else None, place) if start is not None)
 
 
 def _misses(search: NodeSearch, turns: FloatArray) -> list[tuple[Place | None, float]]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from meshdrape.geodesic.distance import exact_distances, surface_distance
 from meshdrape.geodesic.patch import Patch, faces_between
 from meshdrape.kernels.place import FOLD_SINE
-from meshdrape.kernels.walk import WALKED, walk
+from meshdrape.kernels.walk import WALKED, turn_into, walk
 from meshdrape.surface import Surface, SurfacePoint
 
 FloatArray = NDArray[np.float64]
@@ -23,12 +23,11 @@ Place = tuple[int, float, float]
 # Distances are met to this share of the spacing; libigl's own round-off is about 1e-13.
 MET = 3e-11
 MAX_TRIALS = 30
-# Step of the differences that give an edge its directions, in spacings: their error is its square.
-STEP = 1e-4
+# Steps of the differences that give a direction, in spacings: its error is their square. The coarse one is for a
+# straight path to start from, which then corrects itself; the fine one for edges that bend, and have nothing else.
+COARSE, FINE = 1e-3, 1e-4
 # Straight paths that end this near to the node, in spacings, are the edges themselves.
 STRAIGHT = 1e-10
-# Paths up to this much longer than an edge are kept in view where the node is all but known.
-NARROW = 1.02
 
 
 @dataclass(frozen=True)
@@ -68,13 +67,21 @@ class NodeSearch:
         Spacing, mm.
     guess : (face, x, y)
         Where the node is expected.
-    narrow : bool
-        Look only where the shortest paths to the guess, and a little longer ones, can lie: quick, for a guess that is
-        all but right.
+    slack : float, optional
+        Look only where paths lie that are longer by this share than the edges to the guess: quick, for a guess that is
+        nearly right.
     """
 
     def __init__(
-        self, surface: Surface, a: Place, b: Place, warp: float, weft: float, guess: Place, *, narrow: bool = False
+        self,
+        surface: Surface,
+        a: Place,
+        b: Place,
+        warp: float,
+        weft: float,
+        guess: Place,
+        *,
+        slack: float | None = None,
     ) -> None:
         self.surface = surface
         self.a, self.b = a, b
@@ -83,11 +90,16 @@ class NodeSearch:
         node = SurfacePoint.from_frame(surface, *guess)
         # whatever lies within one spacing of either, and a margin for trial points beyond the node
         reach = 1.2 * (warp + weft)
-        if narrow:
-            ways = ((point_a, node, NARROW * warp), (point_b, node, NARROW * weft))
-        else:
-            ways = ((point_a, point_a, reach), (point_b, point_b, reach))
-        faces = np.union1d(*(faces_between(surface, *way) for way in ways))
+        faces = np.empty(0, dtype=np.int64)
+        if slack is not None:
+            ways = [
+                faces_between(surface, *way, (1 + slack) * size)
+                for way, size in (((point_a, node), warp), ((point_b, node), weft))
+            ]
+            if all(len(way) for way in ways):
+                faces = np.union1d(*ways)
+        if not len(faces):
+            faces = np.union1d(*(faces_between(surface, point, point, reach) for point in (point_a, point_b)))
         self.bare = Patch.within(surface, faces, (point_a, point_b, node), 0.55 * reach)
         self.patch = self.bare.copy()
         self.parents = [self.patch.insert(p.face, p.position(surface))[0] for p in (point_a, point_b)]
@@ -100,21 +112,15 @@ class NodeSearch:
         place = self._meet(guess)
         if place is None:
             return None
-        slope = self._slopes(place)
-        if slope is None:
+        edges = [self._edge(k, place) for k in range(2)]
+        warp_edge, weft_edge = edges
+        if warp_edge is None or weft_edge is None:
             return None
-        # the gradient of a distance is the direction in which its path arrives
-        arrive = slope / np.linalg.norm(slope, axis=1)[:, None]
+        p, q = warp_edge.arrive, weft_edge.arrive
         # sine of the angle from A's edge to B's: folded, as for straight paths, within a degree of parallel
-        if (arrive[0, 0] * arrive[1, 1] - arrive[0, 1] * arrive[1, 0]) * side <= FOLD_SINE:
+        if (p[0] * q[1] - p[1] * q[0]) * side <= FOLD_SINE:
             return None
-        edges = []
-        for parent, length, into in zip((self.a, self.b), self.length, arrive, strict=True):
-            edge = self._edge(parent, place, float(length), into)
-            if edge is None:
-                return None
-            edges.append(edge)
-        return Settled(place, *edges)
+        return Settled(place, warp_edge, weft_edge)
 
     def distances(self, place: Place) -> FloatArray | None:
         """Shortest distances (2,) from a place to A and to B, mm; None where it lies off the patch."""
@@ -156,66 +162,62 @@ class NodeSearch:
                 inverse = inverse + np.outer(move - mapped, move @ inverse) / scale
         return None
 
-    def _slopes(self, place: Place) -> FloatArray | None:
+    def _slopes(self, place: Place, step: float = COARSE) -> FloatArray | None:
         """Gradients (2, 2) of the distances to A and to B at a place, in the frame of its face."""
-        step = STEP * float(self.length.min())
-        slopes = np.empty((2, 2))
-        for axis in range(2):
-            ends = []
-            for sense in (step, -step):
-                near = step_from(self.surface, place, sense * np.eye(2)[axis])
-                found = None if near is None else self.distances(near)
-                if found is None:
-                    return None
-                ends.append(found)
-            slopes[:, axis] = (ends[0] - ends[1]) / (2 * step)
-        return slopes if np.linalg.norm(slopes, axis=1).min() > 0.1 else None
+        slopes = self._gradients(self.patch, place, self.parents, step)
+        return None if slopes is None or np.linalg.norm(slopes, axis=1).min() <= 0.1 else slopes
 
-    def _edge(self, parent: Place, place: Place, length: float, arrive: FloatArray) -> Edge | None:
-        """The edge from a parent to the node: straight where a straight path gets there, else bent."""
-        leave = self._leaving(parent, place, length)
+    def _gradients(self, patch: Patch, place: Place, sources: list[int], step: float) -> FloatArray | None:
+        """Gradients (n, 2) at a place of distances from vertices of a patch, by differences over a step in spacings."""
+        step *= float(self.length.min())
+        trial = patch.copy()
+        around = [step_from(self.surface, place, move) for move in step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])]
+        ends = [None if near is None else insert(trial, self.surface, near) for near in around]
+        targets = [end for end in ends if end is not None]
+        if len(targets) < len(ends):
+            return None
+        found = np.array([exact_distances(trial, source, targets) for source in sources])
+        if not np.isfinite(found).all():
+            return None
+        return np.asarray(np.stack([found[:, 0] - found[:, 1], found[:, 2] - found[:, 3]], axis=1) / (2 * step))
+
+    def _edge(self, k: int, place: Place) -> Edge | None:
+        """The edge from a parent, A or B, to the node: straight where a straight path gets there, else bent."""
+        parent, length = (self.a, self.b)[k], float(self.length[k])
+        leave = self._leaving(parent, place, COARSE)
         if leave is None:
             return None
         target = SurfacePoint.from_frame(self.surface, *place).position(self.surface)
         straight, mesh = leave, self.surface.unfolding
-        for _ in range(3):
+        for _ in range(4):
             code, face, x, y, dx, dy = walk(mesh.plane, mesh.neighbour, *parent, *straight, length)
             if code != WALKED:
                 break
-            frame = self.surface.unfolding.frame[face]
+            frame = mesh.frame[face]
             end = (x + length * dx, y + length * dy)
             off = target - frame[:3]
             gap = np.array([off @ frame[3:6] - end[0], off @ frame[6:9] - end[1]])
-            if (
-                float(np.linalg.norm(target - frame[:3] - end[0] * frame[3:6] - end[1] * frame[6:9]))
-                <= STRAIGHT * length
-            ):
-                return Edge(straight, arrive, bent=False)
+            if float(np.linalg.norm(off - end[0] * frame[3:6] - end[1] * frame[6:9])) <= STRAIGHT * length:
+                into = turn_into(mesh.plane, mesh.neighbour, mesh.frame, face, dx, dy, place[0])
+                return Edge(straight, np.array(into), bent=False)
             turn = float(gap @ np.array([-dy, dx])) / length
             straight = straight + turn * np.array([-straight[1], straight[0]])
             straight = straight / np.linalg.norm(straight)
-        return Edge(leave, arrive, bent=True)
+        leave, slopes = self._leaving(parent, place, FINE), self._slopes(place, FINE)
+        if leave is None or slopes is None:
+            return None
+        # the gradient of a distance is the direction in which its path arrives
+        return Edge(leave, slopes[k] / np.linalg.norm(slopes[k]), bent=True)
 
-    def _leaving(self, parent: Place, place: Place, length: float) -> FloatArray | None:
+    def _leaving(self, parent: Place, place: Place, step: float) -> FloatArray | None:
         """Direction (2,) at a parent in which the shortest path to the node leaves: less the distance's gradient."""
-        step = STEP * length
-        slope = np.empty(2)
-        for axis in range(2):
-            ends = []
-            for sense in (step, -step):
-                near = step_from(self.surface, parent, sense * np.eye(2)[axis])
-                trial = self.bare.copy()
-                source = None if near is None else insert(trial, self.surface, near)
-                target = insert(trial, self.surface, place)
-                if source is None or target is None:
-                    return None
-                found = float(exact_distances(trial, source, [target])[0])
-                if not np.isfinite(found):
-                    return None
-                ends.append(found)
-            slope[axis] = (ends[0] - ends[1]) / (2 * step)
-        size = float(np.linalg.norm(slope))
-        return -slope / size if size > 0.1 else None
+        trial = self.bare.copy()
+        node = insert(trial, self.surface, place)
+        slope = None if node is None else self._gradients(trial, parent, [node], step)
+        if slope is None:
+            return None
+        size = float(np.linalg.norm(slope[0]))
+        return -slope[0] / size if size > 0.1 else None
 
 
 def shortest(surface: Surface, tail: Place, head: Place, length: float) -> bool:
