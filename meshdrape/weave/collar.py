@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.surface import Surface
+from meshdrape.weave.notches import without_notches
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,8 +35,13 @@ def extended(surface: Surface, depth: float) -> Surface:
     """The surface with a collar `depth` mm wide along its outer borders and its holes filled.
 
     Faces and vertices of `surface` keep their numbers; those of the collar follow. A closed surface is returned as
-    it is. Along a hollow border the collar is narrowed where it would fold over itself.
+    it is. Notches narrower than `depth` are filled first; along a hollow border the collar is narrowed where it would
+    fold over itself.
     """
+    n_mould_faces = len(surface.faces)
+    notches = without_notches(surface, depth)
+    if len(notches):
+        surface = Surface.from_arrays(surface.vertices, np.concatenate([surface.faces, notches]), n_mould_faces)
     vertices = [surface.vertices]
     faces = [surface.faces]
     count = len(surface.vertices)
@@ -49,7 +55,7 @@ def extended(surface: Surface, depth: float) -> Surface:
         count += len(new_vertices)
     if len(faces) == 1:
         return surface
-    return Surface.from_arrays(np.concatenate(vertices), np.concatenate(faces), n_mould_faces=len(surface.faces))
+    return Surface.from_arrays(np.concatenate(vertices), np.concatenate(faces), n_mould_faces=n_mould_faces)
 
 
 def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[FloatArray, IntArray]:
@@ -69,6 +75,9 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
     ruling *= np.where(np.einsum("ij,ij->i", ruling, before + outward) < 0, -1.0, 1.0)[:, None]
     leaves = np.minimum(np.einsum("ij,ij->i", ruling, before), np.einsum("ij,ij->i", ruling, outward))
     ruled = (angle > ONE_PLANE) & (leaves > RULING_LEAVES)
+    # what fills a notch leans as the notch had it: no ruling of the mould's
+    filling = surface.face_rim[face] >= 0
+    ruled &= ~(filling | np.roll(filling, 1))
     # one outer vertex a border vertex, as far out as both strips are deep
     middle = before + outward
     size = np.linalg.norm(middle, axis=1)

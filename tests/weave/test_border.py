@@ -24,6 +24,7 @@ from moulds import (
 
 import meshdrape
 from meshdrape import NodeStatus
+from meshdrape.weave import read_off
 
 
 def lay(mesh: Mesh, spacing, seed, degrees=0.0, **options):
@@ -396,3 +397,35 @@ def test_seed_off_the_mould_is_projected_and_the_distance_told():
     net = meshdrape.drape(plate().mould(), meshdrape.Fabric(7.0), (3, 5, 4.5), (1, 0, 0))
     assert net.seed_distance == pytest.approx(4.5)
     assert net.seed == pytest.approx([3, 5, 0], abs=1e-12)
+
+
+def torn(seed, size=200.0, n=40):
+    """A hilly plate with half of the triangles along its border torn out."""
+    mesh = bumpy(seed, size=size, n=n, height=6.0)
+    surface = mesh.mould().surface
+    rng = np.random.default_rng(seed)
+    rim = surface.face_neighbour < 0
+    tip = surface.faces[np.arange(len(surface.faces)), (np.argmax(rim, axis=1) + 2) % 3]
+    kept = np.ones(len(surface.faces), dtype=bool)
+    touched = set()
+    for face in np.flatnonzero((rim.sum(axis=1) == 1) & ~surface.border_vertex[tip]):
+        if rng.random() < 0.5 and tip[face] not in touched:
+            kept[face] = False
+            touched.add(tip[face])
+    used, triangles = np.unique(surface.faces[kept], return_inverse=True)
+    return meshdrape.Mould.from_arrays(surface.vertices[used], triangles.reshape(-1, 3))
+
+
+@pytest.mark.parametrize("spacing", [2.0, 6.0])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_torn_border_costs_no_cloth(seed, spacing):
+    """Notches are filled before the mould is extended: no node is lost for them, and none sheared."""
+    mould = torn(seed)
+    start = mould.surface.closest_point((3, 5, 0))[0].position(mould.surface)
+    whole = meshdrape.drape(bumpy(seed, n=40, height=6.0).mould(), meshdrape.Fabric(spacing), start, (1, 0.3, 0))
+    net = meshdrape.drape(mould, meshdrape.Fabric(spacing), start, (1, 0.3, 0))
+    assert not any(net.count(status) for status in NodeStatus if status > NodeStatus.OUTSIDE)
+    measures = meshdrape.measure(net)
+    assert read_off(measures).coverage_fraction > 0.995
+    assert measures.max_shear <= meshdrape.measure(whole).max_shear * 1.05 + np.radians(0.2)
+    assert meshdrape.audit(net, 300).max_relative_error < 1e-9
