@@ -1,0 +1,34 @@
+"""How far a spar may leave the origami fold: the questions of a wing box, answered by draping."""
+
+from meshdrape.study.fold.answer import (
+    Choice,
+    Envelope,
+    FoldAnswer,
+    FoldWarning,
+    Laying,
+    Limit,
+    NearestSpar,
+    Pair,
+    Shear,
+    SparMap,
+    Verdict,
+    Where,
+)
+from meshdrape.study.fold.design import Design, read_design
+
+__all__ = [
+    "Choice",
+    "Design",
+    "Envelope",
+    "FoldAnswer",
+    "FoldWarning",
+    "Laying",
+    "Limit",
+    "NearestSpar",
+    "Pair",
+    "Shear",
+    "SparMap",
+    "Verdict",
+    "Where",
+    "read_design",
+]
