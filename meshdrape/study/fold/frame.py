@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -150,7 +149,3 @@ def frame_of(design: Design, fold: Fold | None = None, first: str | None = None,
     height = design.chord if first == "spar" else design.spar_height
     return Frame(fold or design.fold, first, end or design.end, height)
 
-
-def degrees(angle: float) -> str:
-    """An angle for people."""
-    return f"{math.degrees(angle):.3g} deg"

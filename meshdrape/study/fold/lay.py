@@ -71,6 +71,11 @@ class FoldDrape:
         clear = ~(on[:-1, :-1] | on[1:, :-1] | on[:-1, 1:] | on[1:, 1:])
         return _largest(self.shear, clear & self.within)[0]
 
+    @property
+    def asked(self) -> float:
+        """What the cloth has to shear by anywhere but in the cells that straddle the crease, rad."""
+        return max(self.largest.largest, self.first_sheet)
+
 
 def _largest(shear: FloatArray, cells: NDArray[np.bool_]) -> tuple[float, tuple[int, int]]:
     value = np.where(cells & np.isfinite(shear), np.abs(shear), -1.0)
