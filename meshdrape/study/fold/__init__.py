@@ -14,7 +14,9 @@ from meshdrape.study.fold.answer import (
     Verdict,
     Where,
 )
+from meshdrape.study.fold.ask import drape_design, fold_answer
 from meshdrape.study.fold.design import Design, read_design
+from meshdrape.study.fold.facts import facts
 
 __all__ = [
     "Choice",
@@ -30,5 +32,8 @@ __all__ = [
     "SparMap",
     "Verdict",
     "Where",
+    "drape_design",
+    "facts",
+    "fold_answer",
     "read_design",
 ]

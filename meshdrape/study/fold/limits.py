@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,12 +14,12 @@ from meshdrape.study.fold.design import Design
 from meshdrape.study.fold.frame import Cloth, Frame, frame_of
 from meshdrape.study.fold.lay import FoldDrape, lay
 from meshdrape.study.fold.mould import ruled_mould
-from meshdrape.theory import Fold, within_reach
+from meshdrape.theory import Fold, Reach, within_reach
 
 # The drape at the factor found locks within this of the angle, rad, and not past it.
 TOLERANCE = math.radians(0.002)
 # Factors are tried up to the one at which f is this steep, and grow by this from one to the next.
-STEEPEST, GROWTH = 1.5, 1.15
+STEEPEST, GROWTH = 1.5, 1.3
 MOST_DRAPES = 16
 
 
@@ -55,25 +55,38 @@ class _Search:
     design: Design
     step: Callable[[int], None]
     drapes: int = 0
+    _reach: dict[float, tuple[Frame, Reach]] = field(default_factory=dict)
+    _laid: dict[tuple[float, float], FoldDrape | None] = field(default_factory=dict)
 
     def gamma(self, frame: Frame, rule: str) -> float:
         return frame.gamma(self.design.gamma if rule == "design" else rule)
 
     def foretold(self, factor: float, rule: str) -> float:
         """Largest shear within reach, rad."""
-        frame = scaled(self.design, factor)
-        reach = within_reach(frame.fold, frame.height, self.gamma(frame, rule))
-        return max(reach.wing_fed.shear, reach.ribbon_fed.shear)
+        if factor not in self._reach:
+            frame = scaled(self.design, factor)
+            self._reach[factor] = frame, within_reach(frame.fold, frame.height)
+        frame, reach = self._reach[factor]
+        if rule == "best":
+            ribbon_fed = reach.ribbon_fed_best
+        elif (gamma := self.gamma(frame, rule)) == 0:
+            ribbon_fed = reach.ribbon_fed.shear
+        else:
+            ribbon_fed = within_reach(frame.fold, frame.height, gamma).ribbon_fed.shear
+        return max(reach.wing_fed.shear, ribbon_fed)
 
     def lay(self, factor: float, rule: str) -> FoldDrape | None:
         """The drape, None where none can be laid."""
         frame = scaled(self.design, factor)
-        self.drapes += 1
-        self.step(self.drapes)
-        try:
-            return draped(frame, self.design, self.gamma(frame, rule))
-        except MeshdrapeError:
-            return None
+        gamma = self.gamma(frame, rule)
+        if (factor, gamma) not in self._laid:
+            self.drapes += 1
+            self.step(self.drapes)
+            try:
+                self._laid[factor, gamma] = draped(frame, self.design, gamma)
+            except MeshdrapeError:
+                self._laid[factor, gamma] = None
+        return self._laid[factor, gamma]
 
     def limit(self, rule: str) -> Limit:
         design = self.design
@@ -100,7 +113,7 @@ class _Search:
     def _between(self, rule: str, low: float, high: float) -> Limit:
         """Root of locking angle - TOLERANCE / 2 - drape's shear: foretold, then corrected drape by drape."""
         target = self.design.locking_angle - TOLERANCE / 2
-        for _ in range(12):
+        for _ in range(7):
             middle = (low + high) / 2
             low, high = (middle, high) if self.foretold(middle, rule) <= target else (low, middle)
         slope = (self.foretold(1.01 * high, rule) - self.foretold(0.99 * high, rule)) / (0.02 * high)

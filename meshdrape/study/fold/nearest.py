@@ -180,11 +180,12 @@ class _Problem:
     def change(self, angle: float) -> Profile:
         """The least change with which every pair within reach keeps the angle."""
         values = self.values
-        for _ in range(MOST_ROUNDS):
+        for k in range(MOST_ROUNDS):
             frame = self.frame(values)
             psi = frame.fold.psi(self.y)
             found, worst = self._wanting(frame, psi, angle)
-            if worst <= MET:
+            # the pairs of an earlier angle are solved for this one before they are believed
+            if worst <= MET and (k > 0 or self.pairs is None):
                 break
             self.pairs = found if self.pairs is None else self.pairs.joined(found)
             tilt = 1e-6
