@@ -235,8 +235,8 @@ class Envelope:
     ----------
     family : str
         "sine", "ripple" or "bump".
-    amplitude : (a,) mm
-        Values of c.
+    amplitude : (a, b) mm
+        Values of c: at every wavelength those of the same slopes.
     wavelength : (b,) mm
         Or length, of a bump.
     wing_fed, ribbon_fed : (a, b) rad

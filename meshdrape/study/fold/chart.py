@@ -22,10 +22,20 @@ FloatArray = NDArray[np.float64]
 
 # Families of f by what their second parameter is called.
 FAMILIES = {"sine": "wavelength", "ripple": "wavelength", "bump": "length"}
+# Their steepest slope is this times c / wavelength; of a bump where r² = (5 - √17) / 4.
+_BUMP = (5 - math.sqrt(17)) / 4
+_STEEPNESS = {
+    "sine": 2 * math.pi,
+    "ripple": 2 * math.pi,
+    "bump": 2 * math.sqrt(_BUMP) * (1 - _BUMP) * math.exp(1 - _BUMP),
+}
 # The chart's drapes have no more columns than this: it asks where the border is, not for the last hundredth.
 MOST_COLUMNS = 360
-# Directions of the crease from facet to facet, rad, and the facets' least number in a wave.
-TURN = math.radians(0.03)
+# For the same reason: turn of the crease from facet to facet, rad, and the most facets.
+TURN, FACETS = math.radians(0.03), 2000
+# Steepest slope of the family's first and last member, in tangents of the locking angle. Where f' changes sign the
+# cloth sees its range: the limit lies near one half.
+GENTLEST, STEEPEST = 0.2, 1.4
 
 
 def envelope(
@@ -42,7 +52,8 @@ def envelope(
     design : Design
     family : "sine", "ripple" or "bump"
     shape : (amplitudes, wavelengths)
-        Both evenly spaced in their logarithm, about the amplitude whose slope is the locking angle's.
+        Both evenly spaced in their logarithm. The amplitudes of each wavelength are those of the same slopes, so that
+        the locking angle is passed at every wavelength.
     step : callable, optional
         Called with the number of designs done.
     threads : int, optional
@@ -53,14 +64,14 @@ def envelope(
         raise DesignError(msg)
     begun = time.perf_counter()
     wavelength = np.geomspace(design.span / 14, 2 * design.span, shape[1])
-    steep = math.tan(design.locking_angle) * wavelength / (2 * math.pi)  # slope of the locking angle
-    amplitude = np.geomspace(0.3 * steep.min(), 2.0 * steep.max(), shape[0])
+    slope = math.tan(design.locking_angle) * np.geomspace(GENTLEST, STEEPEST, shape[0])
+    amplitude = slope[:, None] * wavelength / _STEEPNESS[family]
     spacing = max(design.spacing, design.fold.wing.length / MOST_COLUMNS)
     wing_fed, ribbon_fed = np.full((2, *shape), np.nan)
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
         tasks = {
-            pool.submit(_draped, design, family, float(c), float(w), spacing): (a, b)
-            for a, c in enumerate(amplitude)
+            pool.submit(_draped, design, family, float(amplitude[a, b]), float(w), spacing): (a, b)
+            for a in range(shape[0])
             for b, w in enumerate(wavelength)
         }
         for done, task in enumerate(as_completed(tasks), start=1):
@@ -88,13 +99,13 @@ def _draped(design: Design, family: str, amplitude: float, wavelength: float, sp
         frame = frame_of(made)
         gamma = frame.gamma(made.gamma)
         cloth = Cloth.of(frame, spacing, made.row_offset, gamma)
-        return lay(cloth, ruled_mould(frame, cloth, TURN), gamma, made.locking_angle, threads=1).largest
+        return lay(cloth, ruled_mould(frame, cloth, TURN, FACETS), gamma, made.locking_angle, threads=1).largest
     except MeshdrapeError:
         return None  # too steep to lay a net over at all
 
 
 def allowed(amplitude: FloatArray, largest: FloatArray, locking_angle: float) -> FloatArray:
-    """Amplitude at which the shear of each column, (a, b) rad, first passes the angle, between two designs in its log."""
+    """Amplitude of each column at which its shear, (a, b) rad, first passes the angle; between two designs in its log."""
     out = np.full(largest.shape[1], np.nan)
     for b in range(largest.shape[1]):
         over = np.flatnonzero(~(largest[:, b] <= locking_angle))
@@ -106,5 +117,5 @@ def allowed(amplitude: FloatArray, largest: FloatArray, locking_angle: float) ->
             continue
         low, high = largest[k - 1, b], largest[k, b]
         part = (locking_angle - low) / (high - low) if np.isfinite(high) else 0.0
-        out[b] = amplitude[k - 1] * (amplitude[k] / amplitude[k - 1]) ** part
+        out[b] = amplitude[k - 1, b] * (amplitude[k, b] / amplitude[k - 1, b]) ** part
     return out

@@ -140,7 +140,7 @@ def _envelope(envelope: Envelope) -> dict[str, Any]:
         "family": envelope.family,
         "rule": envelope.rule,
         "spacing_mm": envelope.spacing,
-        "amplitude_mm": _list(envelope.amplitude),
+        "amplitude_mm": [_list(row) for row in envelope.amplitude],
         "wavelength_mm": _list(envelope.wavelength),
         "allowed_mm": _list(envelope.allowed),
         "wing_fed_deg": [_list(row) for row in np.degrees(envelope.wing_fed)],

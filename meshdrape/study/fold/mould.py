@@ -20,9 +20,9 @@ FloatArray = NDArray[np.float64]
 # A facet of the crease stands for all its directions: half of what it turns by is lost. Rad from facet to facet.
 CAD_TURN = math.radians(0.01)
 CAD_CHORD = 0.01  # mm; the turn governs
-CAD_FACETS = 3500  # of the crease, about: past them the turn is wider
+CAD_FACETS = 3500  # of the crease: where it turns more in all, the facets turn more each
 RULED_TURN = math.radians(0.01)
-MOST_FACETS = 40_000
+RULED_FACETS = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,16 +47,18 @@ class FoldMould:
         return math.atan2(dz, math.hypot(dy, dx)) - math.atan2(dx, math.hypot(dy, dz))
 
 
-def ruled_mould(frame: Frame, cloth: Cloth, turn: float = RULED_TURN) -> FoldMould:
+def ruled_mould(frame: Frame, cloth: Cloth, turn: float = RULED_TURN, facets: int = RULED_FACETS) -> FoldMould:
     """The mould with facets along the rulings of both sides: exactly developable, and quick to make.
 
     Parameters
     ----------
     turn : float
-        Most that the crease's directions on either side change over a facet, rad.
+        Most that the slopes of the crease change over a facet, as long as there are no more than
+    facets : int
+        of them: there they share alike.
     """
     fold = frame.fold
-    y = facet_bounds(frame, turn)
+    y, _ = facet_bounds(frame, turn, facets)
     edge, lift = fold.spar(y), fold.wing(y)
     far = np.maximum(edge.max(), edge.min() + cloth.width) + cloth.spacing
     k = len(y)
@@ -72,19 +74,21 @@ def ruled_mould(frame: Frame, cloth: Cloth, turn: float = RULED_TURN) -> FoldMou
     )
 
 
-def facet_bounds(frame: Frame, turn: float, most: int = MOST_FACETS) -> FloatArray:
-    """Stations between which the slopes of both profiles change by no more than `turn`, from 0 to the span."""
+def facet_bounds(frame: Frame, turn: float, facets: int) -> tuple[FloatArray, float]:
+    """Stations from 0 to the span between which the slopes of both profiles change alike, and by how much, rad.
+
+    That is by no more than `turn`, unless it took more than so many facets.
+    """
     fold = frame.fold
     fine = np.linspace(0.0, fold.span, 20_001)
     bend = np.maximum(np.abs(fold.wing.bend(fine)), np.abs(fold.spar.bend(fine)))
-    # the bends at both ends of a step bound it well enough; a floor so that straight profiles are cut too
-    rate = np.maximum(bend[1:], bend[:-1]) / turn + 40 / fold.span
-    count = np.concatenate([[0.0], np.cumsum(rate * np.diff(fine))])
+    # the larger bend at the ends of so short a step bounds it well enough
+    change = np.concatenate([[0.0], np.cumsum(np.maximum(bend[1:], bend[:-1]) * np.diff(fine))])
+    turn = max(turn, float(change[-1]) / facets)
+    # some facets where the profiles are straight, too
+    count = change / turn + 40 * fine / fold.span
     n = int(np.ceil(count[-1]))
-    if n > most:
-        msg = f"the profiles turn too often along the span: {n} facets; raise the wavelength or lower the amplitude"
-        raise DesignError(msg)
-    return np.asarray(np.interp(np.linspace(0.0, count[-1], n + 1), count, fine))
+    return np.interp(np.linspace(0.0, count[-1], n + 1), count, fine), turn
 
 
 def cad_mould(design: Design, frame: Frame, cloth: Cloth) -> FoldMould:
@@ -99,7 +103,7 @@ def cad_mould(design: Design, frame: Frame, cloth: Cloth) -> FoldMould:
     else:
         chord = max(chord, cloth.width + cloth.spacing)
     parameters = {"span": design.span, "chord": max(chord, height), "spar_height": height, **_shapes(design)}
-    turn = max(CAD_TURN, CAD_TURN * (len(facet_bounds(frame, CAD_TURN, most=10 * MOST_FACETS)) / CAD_FACETS))
+    _, turn = facet_bounds(frame, CAD_TURN, CAD_FACETS)
     try:
         made = build_script("wing_spar", parameters, CAD_CHORD, turn)
     except FileError as error:
