@@ -47,8 +47,8 @@ def _verdict(answer: FoldAnswer) -> list[str]:
     return [
         f"{says}: the cloth shears by {_deg(verdict.locking_angle - verdict.margin)} and locks at "
         f"{_deg(verdict.locking_angle)}, {abs(margin):.2f} deg {'to spare' if margin >= 0 else 'too much'}",
-        f"  wing {design.wing.name}, {spar}; {design.span:,.0f} x {design.chord:,.0f} mm, spar {design.spar_height:,.0f} mm "
-        f"high; ribbons {design.spacing:g} mm",
+        f"  wing {design.wing.name}, {spar}; {design.span:,.0f} x {design.chord:,.0f} mm, spar "
+        f"{design.spar_height:,.0f} mm high; ribbons {design.spacing:g} mm",
         f"  sheet first on the {design.first} from the {design.end}, left-most ribbon at gamma = {_deg(verdict.gamma)}",
     ]
 

@@ -105,7 +105,7 @@ def _draped(design: Design, family: str, amplitude: float, wavelength: float, sp
 
 
 def allowed(amplitude: FloatArray, largest: FloatArray, locking_angle: float) -> FloatArray:
-    """Amplitude of each column at which its shear, (a, b) rad, first passes the angle; between two designs in its log."""
+    """Amplitude of each column at which its shear, (a, b) rad, first passes the angle, between two of its designs."""
     out = np.full(largest.shape[1], np.nan)
     for b in range(largest.shape[1]):
         over = np.flatnonzero(~(largest[:, b] <= locking_angle))

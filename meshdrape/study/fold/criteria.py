@@ -94,7 +94,9 @@ def _eq20(value: float, drape: FoldDrape, locking: float) -> str:
 
 def _eq29(value: float, drape: FoldDrape, locking: float) -> str:
     wing_fed = drape.largest.wing_fed or 0.0
-    silent = "" if drape.largest.largest <= value + ALIKE else "; it does not speak of ribbon-fed rows, which shear more"
+    silent = (
+        "" if drape.largest.largest <= value + ALIKE else "; it does not speak of ribbon-fed rows, which shear more"
+    )
     if value > wing_fed + ALIKE:
         least, greatest = psi_range(drape.cloth.frame.fold)
         at = sorted(drape.cloth.frame.station(y) for y in (least.y, greatest.y))

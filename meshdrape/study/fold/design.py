@@ -96,7 +96,7 @@ class Design:
 
     @cached_property
     def deviation_profile(self) -> Profile:
-        """f = g_s - g_w."""
+        """F = g_s - g_w."""
         if self.deviation is not None:
             return self.deviation.deviation(self.span)
         assert self.spar is not None
@@ -174,7 +174,10 @@ def design_from(table: dict[str, Any]) -> Design:
     start = _part(table, "start", {})
     _only(start, _START, "[start]")
     design = Design(
-        **size,
+        span=size["span"],
+        chord=size["chord"],
+        spar_height=size["spar_height"],
+        spacing=size["spacing"],
         locking_angle=math.radians(locking),
         row_offset=offset,
         wing=wing,
@@ -218,8 +221,8 @@ def _shape(part: dict[str, Any], key: str, known: Any, where: str, mm: float) ->
             msg = f"{where} {column_name} must be a list of numbers, such as {column_name} = [0.0, 1.0, 2.0, 3.0]"
             raise DesignError(msg)
     for parameter, value in parameters.items():
-        if not (name == "table") and np.ndim(value):
-            msg = f"{where} {parameter} must be a number, not a list; a list belongs to {key} = \"table\""
+        if name != "table" and np.ndim(value):
+            msg = f'{where} {parameter} must be a number, not a list; a list belongs to {key} = "table"'
             raise DesignError(msg)
     return Shape(name, parameters)
 
@@ -281,8 +284,8 @@ def _check_profiles(design: Design) -> None:
     away = int(np.argmax(np.abs(f)))
     if f[away] > design.chord:
         msg = (
-            f"[spar] the profiles cross: f = {f[away] / unit:.4g} {design.unit} at y = {y[away] / unit:g} puts the spar "
-            f"past the wing's far edge (chord = {design.chord / unit:g}); lower f"
+            f"[spar] the profiles cross: f = {f[away] / unit:.4g} {design.unit} at y = {y[away] / unit:g} puts the "
+            f"spar past the wing's far edge (chord = {design.chord / unit:g}); lower f"
         )
         raise DesignError(msg)
 

@@ -82,9 +82,11 @@ class Frame:
 
     def gamma(self, rule: float | str) -> float:
         """Of a rule: "free", "best", "gamma 0" or a number of radians."""
-        if isinstance(rule, str):
-            return {"free": lambda: float(self.fold.psi(0.0)), "best": self.gamma_best, "gamma 0": lambda: 0.0}[rule]()
-        return rule
+        if rule == "free":
+            return float(self.fold.psi(0.0))
+        if rule == "best":
+            return self.gamma_best()
+        return 0.0 if isinstance(rule, str) else rule
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,4 +150,3 @@ def frame_of(design: Design, fold: Fold | None = None, first: str | None = None,
     first = first or design.first
     height = design.chord if first == "spar" else design.spar_height
     return Frame(fold or design.fold, first, end or design.end, height)
-

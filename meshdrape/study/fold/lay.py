@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,9 +94,7 @@ def lay(cloth: Cloth, mould: FoldMould, gamma: float, locking_angle: float, thre
     """
     fabric = Fabric(cloth.spacing, locking_angle=locking_angle)
     turn = mould.psi_at_start() - gamma
-    net = drape(
-        mould.mould, fabric, cloth.seed, cloth.direction, extent=cloth.extent, weft_turn=turn, threads=threads
-    )
+    net = drape(mould.mould, fabric, cloth.seed, cloth.direction, extent=cloth.extent, weft_turn=turn, threads=threads)
     return read(cloth, mould, gamma, net)
 
 
@@ -115,7 +114,7 @@ def read(cloth: Cloth, mould: FoldMould, gamma: float, net: Net) -> FoldDrape:
     return FoldDrape(cloth, gamma, net, node, shear, on, regions(on), within)
 
 
-def _window(values: NDArray, i: int, j: int, shape: tuple[int, ...], missing: object) -> NDArray:
+def _window(values: NDArray[Any], i: int, j: int, shape: tuple[int, ...], missing: object) -> NDArray[Any]:
     out = np.full(shape, missing, dtype=values.dtype)
     part = values[i : i + shape[0], j : j + shape[1]]
     out[: part.shape[0], : part.shape[1]] = part

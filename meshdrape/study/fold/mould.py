@@ -69,9 +69,7 @@ def ruled_mould(frame: Frame, cloth: Cloth, turn: float = RULED_TURN, facets: in
     # counter-clockwise about +z on the wing and about -x on the spar
     wing = np.concatenate([np.stack([a, a + k, a + k + 1], 1), np.stack([a, a + k + 1, a + 1], 1)])
     spar = np.concatenate([np.stack([a, a + 1, a + 2 * k + 1], 1), np.stack([a, a + 2 * k + 1, a + 2 * k], 1)])
-    return FoldMould(
-        Mould.from_arrays(np.concatenate([crease, trailing, hem]), np.concatenate([wing, spar])), crease
-    )
+    return FoldMould(Mould.from_arrays(np.concatenate([crease, trailing, hem]), np.concatenate([wing, spar])), crease)
 
 
 def facet_bounds(frame: Frame, turn: float, facets: int) -> tuple[FloatArray, float]:
@@ -109,13 +107,15 @@ def cad_mould(design: Design, frame: Frame, cloth: Cloth) -> FoldMould:
     except FileError as error:
         msg = f"no CAD mould of this design: {error}"
         raise DesignError(msg) from None
-    names = {face.id: face.name for face in made.cad_faces}
-    sides = [
-        np.unique(made.triangles[[names[int(face)] == side for face in made.triangle_face]]) for side in ("wing", "spar")
-    ]
+    wing, spar = (
+        np.unique(made.triangles[made.triangle_face == face.id])
+        for name in ("wing", "spar")
+        for face in made.cad_faces
+        if face.name == name
+    )
     vertices = frame.from_design(made.vertices)
     triangles = made.triangles[:, ::-1] if frame.mirrored else made.triangles
-    crease = vertices[np.intersect1d(*sides)]
+    crease = vertices[np.intersect1d(wing, spar)]
     crease = crease[np.argsort(crease[:, 1])]
     mould = Mould(
         vertices,

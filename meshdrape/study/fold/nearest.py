@@ -164,7 +164,7 @@ class _Problem:
         else:
             # slope leaves the mean of the change open: it is made 0
             parts = [self.slope, width * bend, value.mean(axis=0, keepdims=True) / design.span]
-        self.root = np.linalg.qr(np.sqrt(step) * np.concatenate(parts), mode="r")
+        self.root: FloatArray = np.asarray(np.linalg.qr(np.sqrt(step) * np.concatenate(parts), mode="r"))
         self.pairs: _Pairs | None = None
         self.values = np.zeros(count)
 
