@@ -57,7 +57,7 @@ def _remarks(design: Design, drape: FoldDrape, criteria: dict[str, Shear]) -> di
     wing_fed, ribbon_fed = draped.wing_fed or 0.0, draped.ribbon_fed or 0.0
     return {
         "eq20": _eq20(criteria["eq20"].largest, drape, locking),
-        "eq29": _eq29(criteria["eq29"].largest, drape, locking),
+        "eq29": _eq29(criteria["eq29"].largest, criteria["within_reach"].wing_fed or 0.0, drape, locking),
         "within_reach": _compared(
             max(criteria["within_reach"].largest, 0.0), draped.largest, locking, "the limit of ever finer ribbons"
         ),
@@ -92,7 +92,7 @@ def _eq20(value: float, drape: FoldDrape, locking: float) -> str:
     return "right here"
 
 
-def _eq29(value: float, drape: FoldDrape, locking: float) -> str:
+def _eq29(value: float, reached: float, drape: FoldDrape, locking: float) -> str:
     wing_fed = drape.largest.wing_fed or 0.0
     silent = (
         "" if drape.largest.largest <= value + ALIKE else "; it does not speak of ribbon-fed rows, which shear more"
@@ -100,10 +100,12 @@ def _eq29(value: float, drape: FoldDrape, locking: float) -> str:
     if value > wing_fed + ALIKE:
         least, greatest = psi_range(drape.cloth.frame.fold)
         at = sorted(drape.cloth.frame.station(y) for y in (least.y, greatest.y))
-        return (
-            f"too strict here by {_deg(value - wing_fed)}{_wrong(value, wing_fed, locking)}: the extremes of psi, at "
-            f"y = {at[0]:,.0f} and {at[1]:,.0f} mm, do not meet on the spar{silent}"
+        why = (
+            f"the extremes of psi, at y = {at[0]:,.0f} and {at[1]:,.0f} mm, do not meet on the spar"
+            if reached < value - ALIKE
+            else "they meet, but ribbons this far apart miss the very extremes"
         )
+        return f"too strict here by {_deg(value - wing_fed)}{_wrong(value, wing_fed, locking)}: {why}{silent}"
     if value < wing_fed - ALIKE:
         return f"unsafe here, {_deg(wing_fed - value)} too low: rows come back to the side laid first{silent}"
     return f"right here{silent}"

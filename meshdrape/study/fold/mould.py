@@ -18,11 +18,11 @@ from meshdrape.study.fold.frame import Cloth, Frame
 FloatArray = NDArray[np.float64]
 
 # A facet of the crease stands for all its directions: half of what it turns by is lost. Rad from facet to facet.
-CAD_TURN = math.radians(0.01)
+CAD_TURN = math.radians(0.02)
 CAD_CHORD = 0.01  # mm; the turn governs
-CAD_FACETS = 3500  # of the crease: where it turns more in all, the facets turn more each
-RULED_TURN = math.radians(0.01)
-RULED_FACETS = 4000
+CAD_FACETS = 2500  # of the crease: where it turns more in all, the facets turn more each
+RULED_TURN = math.radians(0.015)
+RULED_FACETS = 2500
 
 
 @dataclass(frozen=True, eq=False)
