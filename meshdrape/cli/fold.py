@@ -1,0 +1,100 @@
+"""meshdrape fold DESIGN.toml: how far may the spar leave the origami fold."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from meshdrape.cli.main import DONE
+from meshdrape.cli.progress import Progress
+from meshdrape.errors import FileError
+
+if TYPE_CHECKING:
+    from meshdrape.study.fold import FoldAnswer
+
+SUFFIXES = (".json",)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("design", metavar="DESIGN.toml", help="wing, spar, fabric and start; see samples/designs")
+    parser.add_argument(
+        "-o", "--output", action="append", default=[], metavar="FILE", help="write the answer: .json; repeatable"
+    )
+    parser.add_argument(
+        "--nearest", choices=("slope", "position"), default="slope", help="what the nearest spar is nearest in (slope)"
+    )
+    chart = parser.add_argument_group("the chart of allowable deviations")
+    chart.add_argument(
+        "--chart", nargs="?", const=(20, 20), type=_grid, metavar="AxB",
+        help="drape A amplitudes x B wavelengths of a family of f (20x20)",
+    )  # fmt: skip
+    chart.add_argument("--family", choices=("sine", "ripple", "bump"), default="sine", help="of f (sine)")
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _grid(text: str) -> tuple[int, int]:
+    """Two counts, 20x20."""
+    found = re.fullmatch(r"(\d+)x(\d+)", text)
+    if not found or min(int(found[1]), int(found[2])) < 2 or int(found[1]) * int(found[2]) > 10_000:
+        msg = f"{text!r} is no chart: give 20x20, both at least 2 and at most 10,000 designs in all"
+        raise argparse.ArgumentTypeError(msg)
+    return int(found[1]), int(found[2])
+
+
+def run(options: argparse.Namespace, arguments: list[str]) -> int:
+    """Answer, write, print."""
+    del arguments
+    from meshdrape.output.files import check_target
+    from meshdrape.study.fold.design import read_design
+
+    targets = [Path(name) for name in options.output]
+    for target in targets:
+        if target.suffix.lower() not in SUFFIXES:
+            msg = f"{target} has the suffix {target.suffix or '(none)'}; an answer is written as {' '.join(SUFFIXES)}"
+            raise FileError(msg)
+        check_target(target)
+    design = read_design(options.design)
+    with Progress(options.quiet) as progress:
+        progress.stage("reading the design")
+        _announce_compilation(options.quiet)
+        from meshdrape.study.fold import facts, fold_answer
+
+        answer = fold_answer(
+            design,
+            nearest=options.nearest,
+            chart=options.chart,
+            family=options.family,
+            stage=progress.stage,
+            step=progress.step,
+        )
+        progress.stage("writing")
+        for target in targets:
+            _write(answer, target)
+    if options.json:
+        from meshdrape.output import json_text
+
+        sys.stdout.write(json_text(facts(answer)))
+    elif not options.quiet:
+        from meshdrape.output.fold_text import fold_text
+
+        sys.stdout.write(fold_text(answer, targets))
+    return DONE
+
+
+def _write(answer: FoldAnswer, target: Path) -> None:
+    from meshdrape.output import write_json
+    from meshdrape.study.fold import facts
+
+    write_json(facts(answer), target)
+
+
+def _announce_compilation(quiet: bool) -> None:
+    from meshdrape.kernels.cache import is_compiled
+
+    if not quiet and not is_compiled():
+        sys.stderr.write("meshdrape: compiling the kernels, once; this takes about half a minute\n")

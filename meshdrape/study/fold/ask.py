@@ -1,0 +1,103 @@
+"""All questions of a design, one after the other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from meshdrape.study.fold.answer import FoldAnswer
+from meshdrape.study.fold.chart import envelope
+from meshdrape.study.fold.criteria import verdict
+from meshdrape.study.fold.design import Design
+from meshdrape.study.fold.frame import Cloth, frame_of
+from meshdrape.study.fold.lay import FoldDrape, lay
+from meshdrape.study.fold.limits import limits
+from meshdrape.study.fold.mould import cad_mould
+from meshdrape.study.fold.nearest import nearest_spar
+from meshdrape.study.fold.notices import notices
+from meshdrape.study.fold.ways import ways
+from meshdrape.study.fold.where import where
+
+# Called with the name of a stage and how many steps it has, if that is known; and with the steps done.
+Stage = Callable[[str, int | None], None]
+Step = Callable[[int], None]
+
+
+def drape_design(design: Design) -> FoldDrape:
+    """The full drape of a design on its CAD mould, from a row that stays on the side laid first."""
+    frame = frame_of(design)
+    gamma = frame.gamma(design.gamma)
+    cloth = Cloth.of(frame, design.spacing, design.row_offset, gamma)
+    return lay(cloth, cad_mould(design, frame, cloth), gamma, design.locking_angle)
+
+
+def fold_answer(
+    design: Design,
+    *,
+    nearest: str = "slope",
+    chart: tuple[int, int] | None = None,
+    family: str = "sine",
+    stage: Stage | None = None,
+    step: Step | None = None,
+) -> FoldAnswer:
+    """Everything `meshdrape fold` tells of a design.
+
+    Parameters
+    ----------
+    design : Design
+    nearest : "slope" or "position"
+        What the nearest spar is nearest in.
+    chart : (amplitudes, wavelengths), optional
+        Ask for the envelope over a family of f as well.
+    family : str
+        Of that.
+    stage, step : callable, optional
+        For a progress bar.
+
+    Raises
+    ------
+    DesignError
+        The design makes no mould, or no spar near it can be made.
+    """
+    stage = stage or (lambda name, total: None)
+    step = step or (lambda done: None)
+    seconds: dict[str, float] = {}
+    begun = last = time.perf_counter()
+
+    def lap(name: str) -> None:
+        nonlocal last
+        now = time.perf_counter()
+        seconds[name], last = now - last, now
+
+    stage("draping the design", None)
+    drape = drape_design(design)
+    lap("drape")
+    stage("comparing", None)
+    said = verdict(design, drape)
+    places = where(drape, design.locking_angle)
+    warned = notices(design, drape, said)
+    laying = ways(design)
+    lap("criteria")
+    stage("looking for the largest factor", None)
+    found = limits(design, step)
+    lap("limits")
+    stage("looking for the nearest spar", None)
+    near = nearest_spar(design, drape, nearest, step)
+    lap("nearest")
+    charted = None
+    if chart is not None:
+        stage("draping the chart", chart[0] * chart[1])
+        charted = envelope(design, family, chart, step)
+        lap("chart")
+    seconds["total"] = time.perf_counter() - begun
+    return FoldAnswer(
+        design=design,
+        verdict=said,
+        where=places,
+        laying=laying,
+        limits=found,
+        nearest=near,
+        warnings=warned,
+        envelope=charted,
+        seconds=seconds,
+    )

@@ -1,0 +1,343 @@
+"""A wing box on paper: the design file of `meshdrape fold`, read strictly, in millimetres from then on."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshdrape.errors import DesignError, FileError
+from meshdrape.theory import Fold, Profile, named_deviation, named_profile
+from meshdrape.theory.profiles import DEVIATIONS, PROFILES
+
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
+
+# Parameters by the power of length in them: what the unit does to each.
+_POWER = {"a": -1, "radius": 1, "y": 1, "g": 1, "f": 1, "wavelength": 1, "length": 1}
+_LENGTH_C = ("sine", "bump", "ripple")  # c is a length there, elsewhere a slope
+
+# A wing shorter than this, or longer, mm, has its lengths in another unit than it says.
+SHORTEST_SPAN, LONGEST_SPAN = 100.0, 200e3
+
+_SIZES = ("span", "chord", "spar_height", "spacing")
+_TOP = ("unit", *_SIZES, "locking_angle_deg", "row_offset", "wing", "spar", "start")
+_START = ("first", "gamma_deg", "end")
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A profile or a deviation as the file names it: its kind and its parameters, lengths in mm."""
+
+    name: str
+    parameters: dict[str, Any] = field(default_factory=dict)
+
+    def profile(self, span: float) -> Profile:
+        """As a profile of a part."""
+        given = {**self.parameters, **({"metre": 1000.0} if self.name == "real" else {})}
+        return named_profile(self.name, span, **given)
+
+    def deviation(self, span: float) -> Profile:
+        """As a deviation f."""
+        return named_deviation(self.name, span, **self.parameters)
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A wing, a spar, a fabric, and how the sheet is begun. Lengths mm, angles rad.
+
+    Attributes
+    ----------
+    span, chord, spar_height, spacing : float
+    locking_angle : float
+    row_offset : float
+        First row of the sheet laid first at this many spacings from the corner.
+    wing : Shape
+        g_w.
+    spar : Shape or None
+        g_s where the file gives it whole.
+    deviation : Shape or None
+        f where the file gives that: g_s = g_w + f.
+    first : "wing" or "spar"
+        The side the sheet is laid on undeformed.
+    end : "root" or "tip"
+        Where the left-most ribbon lies: y = 0 or y = span.
+    gamma : float, "free" or "best"
+        Turn of the left-most ribbon of the other side, rad.
+    unit : str
+        Of the file.
+    source : Path or None
+    """
+
+    span: float
+    chord: float
+    spar_height: float
+    spacing: float
+    locking_angle: float
+    row_offset: float
+    wing: Shape
+    spar: Shape | None
+    deviation: Shape | None
+    first: str = "wing"
+    end: str = "root"
+    gamma: float | str = 0.0
+    unit: str = "mm"
+    source: Path | None = None
+
+    @cached_property
+    def wing_profile(self) -> Profile:
+        """g_w."""
+        return self.wing.profile(self.span)
+
+    @cached_property
+    def deviation_profile(self) -> Profile:
+        """F = g_s - g_w."""
+        if self.deviation is not None:
+            return self.deviation.deviation(self.span)
+        assert self.spar is not None
+        return self.spar.profile(self.span) - self.wing_profile
+
+    @cached_property
+    def fold(self) -> Fold:
+        """The mould as designed: x along the chord, y from the root."""
+        return Fold(self.wing_profile, self.wing_profile + self.deviation_profile)
+
+    @property
+    def deviates(self) -> bool:
+        """Whether there is any f to speak of."""
+        f = self.deviation_profile
+        y = np.linspace(0.0, self.span, 1001)
+        return bool(np.abs(f.slope(y)).max() > 1e-12)
+
+    @property
+    def rule(self) -> str:
+        """Name of the rule for gamma: "gamma 0", "free", "best", or "design" for another number."""
+        if isinstance(self.gamma, str):
+            return self.gamma
+        return "gamma 0" if self.gamma == 0 else "design"
+
+    def with_deviation(self, deviation: Shape) -> Design:
+        """The same wing with another f."""
+        return replace(self, spar=None, deviation=deviation)
+
+
+def read_design(path: str | PathLike[str]) -> Design:
+    """The design in a TOML file.
+
+    Raises
+    ------
+    FileError
+        The file cannot be read or is no TOML.
+    DesignError
+        It makes no wing box: one line that names the key and the way out.
+    """
+    source = Path(path)
+    try:
+        text = source.read_bytes()
+    except OSError as error:
+        msg = f"cannot read {path}: {error.strerror}"
+        raise FileError(msg) from None
+    try:
+        table = tomllib.loads(text.decode("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        msg = f"{path} is no TOML: {' '.join(str(error).split())}"
+        raise FileError(msg) from None
+    try:
+        return replace(design_from(table), source=source)
+    except DesignError as error:
+        msg = f"{source.name}: {error}"
+        raise DesignError(msg) from None
+
+
+def design_from(table: dict[str, Any]) -> Design:
+    """The design that a parsed file describes; see :func:`read_design`."""
+    _only(table, _TOP, "the design")
+    unit = _word(table, "unit", None, UNITS)
+    mm = UNITS[unit]
+    size = {name: mm * _number(table, name, positive=True) for name in _SIZES}
+    locking = _number(table, "locking_angle_deg", positive=True)
+    if locking >= 90:
+        msg = f"locking_angle_deg = {locking:g}: must lie below 90"
+        raise DesignError(msg)
+    offset = _number(table, "row_offset", 0.5)
+    if not 0 <= offset <= 1:
+        msg = f"row_offset = {offset:g}: must lie between 0 and 1"
+        raise DesignError(msg)
+    _check_sizes(size, unit)
+    wing = _shape(_part(table, "wing"), "profile", PROFILES, "[wing]", mm)
+    spar, deviation = _spar(_part(table, "spar"), mm)
+    start = _part(table, "start", {})
+    _only(start, _START, "[start]")
+    design = Design(
+        span=size["span"],
+        chord=size["chord"],
+        spar_height=size["spar_height"],
+        spacing=size["spacing"],
+        locking_angle=math.radians(locking),
+        row_offset=offset,
+        wing=wing,
+        spar=spar,
+        deviation=deviation,
+        first=_word(start, "first", "wing", ("wing", "spar"), "[start] "),
+        end=_word(start, "end", "root", ("root", "tip"), "[start] "),
+        gamma=_gamma(start),
+        unit=unit,
+    )
+    _check_profiles(design)
+    return design
+
+
+def _spar(part: dict[str, Any], mm: float) -> tuple[Shape | None, Shape | None]:
+    if "profile" in part and "deviation" in part:
+        msg = "[spar] has both a profile and a deviation: give g_s by its profile, or f = g_s - g_w by deviation"
+        raise DesignError(msg)
+    if "profile" in part:
+        return _shape(part, "profile", PROFILES, "[spar]", mm), None
+    return None, _shape(part, "deviation", DEVIATIONS, "[spar]", mm)
+
+
+def _shape(part: dict[str, Any], key: str, known: Any, where: str, mm: float) -> Shape:
+    name = _word(part, key, None, known, f"{where} ")
+    parameters: dict[str, Any] = {}
+    for parameter, value in part.items():
+        if parameter == key:
+            continue
+        if parameter == "metre" or parameter == "span":
+            msg = f"{where} {key} {name!r} does not take {parameter!r}"
+            raise DesignError(msg)
+        power = (1 if name in _LENGTH_C else 0) if parameter == "c" else _POWER.get(parameter, 0)
+        if isinstance(value, list):
+            column = [_real(one, f"{where} {parameter}[{k}]") for k, one in enumerate(value)]
+            parameters[parameter] = np.array(column) * mm**power
+        else:
+            parameters[parameter] = _real(value, f"{where} {parameter}") * mm**power
+    for column_name in ("y", "g", "f"):
+        if name == "table" and column_name in parameters and np.ndim(parameters[column_name]) != 1:
+            msg = f"{where} {column_name} must be a list of numbers, such as {column_name} = [0.0, 1.0, 2.0, 3.0]"
+            raise DesignError(msg)
+    for parameter, value in parameters.items():
+        if name != "table" and np.ndim(value):
+            msg = f'{where} {parameter} must be a number, not a list; a list belongs to {key} = "table"'
+            raise DesignError(msg)
+    return Shape(name, parameters)
+
+
+def _gamma(start: dict[str, Any]) -> float | str:
+    value = start.get("gamma_deg", 0.0)
+    if isinstance(value, str):
+        if value not in ("free", "best"):
+            msg = f'[start] gamma_deg = "{value}": give a number of degrees, "free" or "best"'
+            raise DesignError(msg)
+        return value
+    degrees = _real(value, "[start] gamma_deg")
+    if not abs(degrees) < 90:
+        msg = f"[start] gamma_deg = {degrees:g}: the left-most ribbon must run down the spar; give less than 90"
+        raise DesignError(msg)
+    return math.radians(degrees)
+
+
+def _check_sizes(size: dict[str, float], unit: str) -> None:
+    span, chord, height, spacing = (size[name] for name in _SIZES)
+    if not SHORTEST_SPAN <= span <= LONGEST_SPAN:
+        msg = (
+            f"span: a wing of {span / UNITS[unit]:g} {unit} is {'too short' if span < LONGEST_SPAN else 'too long'}; "
+            f"is unit = {unit!r} right? known units: {', '.join(UNITS)}"
+        )
+        raise DesignError(msg)
+    if height > chord:
+        msg = (
+            f"spar_height = {height / UNITS[unit]:g}: the spar is higher than the wing is wide "
+            f"(chord = {chord / UNITS[unit]:g}); are both in {unit}?"
+        )
+        raise DesignError(msg)
+    if spacing > min(height, span) / 4:
+        msg = (
+            f"spacing = {spacing / UNITS[unit]:g} {unit} leaves no four ribbons on a spar of "
+            f"{height / UNITS[unit]:g} {unit}; is it in {unit}?"
+        )
+        raise DesignError(msg)
+
+
+def _check_profiles(design: Design) -> None:
+    """The profiles exist, are finite, and leave a wing and a spar."""
+    fold, unit = design.fold, UNITS[design.unit]
+    y = np.linspace(0.0, design.span, 2001)
+    for name, profile in (("wing", fold.wing), ("spar", fold.spar)):
+        slope, value = profile.slope(y), profile(y)
+        if not (np.isfinite(slope).all() and np.isfinite(value).all()):
+            k = int(np.argmin(np.isfinite(slope) & np.isfinite(value)))
+            msg = f"[{name}] the profile has no value at y = {y[k] / unit:g}"
+            raise DesignError(msg)
+        steep = int(np.argmax(np.abs(slope)))
+        if abs(slope[steep]) > 5:
+            msg = (
+                f"[{name}] the profile has a slope of {slope[steep]:.3g} at y = {y[steep] / unit:g} {design.unit}; "
+                "no wing is that steep: check the unit of its parameters"
+            )
+            raise DesignError(msg)
+    f = fold.spar(y) - fold.wing(y)
+    away = int(np.argmax(np.abs(f)))
+    if f[away] > design.chord:
+        msg = (
+            f"[spar] the profiles cross: f = {f[away] / unit:.4g} {design.unit} at y = {y[away] / unit:g} puts the "
+            f"spar past the wing's far edge (chord = {design.chord / unit:g}); lower f"
+        )
+        raise DesignError(msg)
+
+
+# --- values of a table ------------------------------------------------------------------------------------------------
+
+
+def _only(table: dict[str, Any], known: tuple[str, ...], where: str) -> None:
+    for key in table:
+        if key not in known:
+            msg = f"{where} has no key {key!r}: {', '.join(known)}"
+            raise DesignError(msg)
+
+
+def _part(table: dict[str, Any], name: str, default: dict[str, Any] | None = None) -> dict[str, Any]:
+    part = table.get(name, default)
+    if part is None:
+        msg = f"[{name}] is missing"
+        raise DesignError(msg)
+    if not isinstance(part, dict):
+        msg = f"{name} must be a table: write [{name}] and its keys below"
+        raise DesignError(msg)
+    return part
+
+
+def _word(table: dict[str, Any], key: str, default: str | None, known: Any, where: str = "") -> str:
+    value = table.get(key, default)
+    if value is None:
+        msg = f"{where}{key} is missing; one of {', '.join(known)}"
+        raise DesignError(msg)
+    if not isinstance(value, str) or value not in known:
+        msg = f"{where}{key} = {value!r} is not known: {', '.join(known)}"
+        raise DesignError(msg)
+    return value
+
+
+def _number(table: dict[str, Any], key: str, default: float | None = None, *, positive: bool = False) -> float:
+    if key not in table and default is None:
+        msg = f"{key} is missing"
+        raise DesignError(msg)
+    value = _real(table.get(key, default), key)
+    if positive and not value > 0:
+        msg = f"{key} = {value:g}: must be positive"
+        raise DesignError(msg)
+    return value
+
+
+def _real(value: Any, what: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        msg = f"{what} = {value!r} is not a number"
+        raise DesignError(msg)
+    if not math.isfinite(value):
+        msg = f"{what} = {value!r} is not finite"
+        raise DesignError(msg)
+    return float(value)

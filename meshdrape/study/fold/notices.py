@@ -1,0 +1,75 @@
+"""Question 6: what to look at, with its place."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from meshdrape.study.fold.answer import FoldWarning, Verdict
+from meshdrape.study.fold.design import Design
+from meshdrape.study.fold.lay import FoldDrape
+from meshdrape.theory import grazing_rows, returning_rows, separation_of_scales
+from meshdrape.weave.status import NodeStatus
+
+# Rows within this of the edge's direction graze it, rad.
+GRAZING = math.radians(1.0)
+# psi may change by this from ribbon to ribbon, rad, before a criterion that takes it for constant misleads.
+COARSE = math.radians(0.5)
+
+
+def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWarning, ...]:
+    """Everything there is to warn of."""
+    frame = drape.cloth.frame
+    fold, found = frame.fold, []
+
+    def stretch(kind: str, start: float, end: float, text: str) -> None:
+        a, b = sorted((frame.station(float(start)), frame.station(float(end))))
+        found.append(FoldWarning(kind, f"y = {a:,.0f} to {b:,.0f} mm: {text}", a, b))
+
+    second = "wing" if frame.first == "spar" else "spar"
+    for back in returning_rows(fold, drape.gamma):
+        if back.turn > 1e-6:
+            stretch(
+                "returning",
+                back.start,
+                back.end,
+                f"ribbons that left the {frame.first} come back to it from the {second}, turned by up to "
+                f"{math.degrees(back.turn):.2f} deg: ill-posed, the sheet cannot lie undeformed on the {frame.first}; "
+                "begin at the other end or lay the other side first",
+            )
+    for start, end in grazing_rows(fold, GRAZING):
+        turn = np.ptp(fold.psi(np.linspace(start, end, 65)))
+        if end - start > design.spacing and turn > 1e-3 * GRAZING:
+            stretch(
+                "grazing",
+                start,
+                end,
+                "rows run within 1 deg of the edge: where one crosses hangs on the spacing and on where the first row "
+                "lies",
+            )
+    scales = separation_of_scales(fold, design.spacing, COARSE)
+    for start, end in scales.coarse:
+        stretch(
+            "coarse",
+            start,
+            end,
+            f"psi changes by up to {math.degrees(scales.turn_change):.2f} deg from one ribbon to the next, more than "
+            f"0.5 deg: a spacing of {design.spacing:g} mm is too coarse for condition (24) and the criteria",
+        )
+    if (verdict.criteria["characteristics"].largest <= design.locking_angle) != verdict.feasible:
+        found.append(
+            FoldWarning("verdict", "too close to call: drape and characteristic construction decide differently")
+        )
+    lost = int(np.count_nonzero(drape.net.node_status >= NodeStatus.FOLDED))
+    if lost:
+        found.append(FoldWarning("drape", f"{lost:,} nodes of the drape could not be placed: the cloth folds there"))
+    if drape.cloth.width > (design.spar_height if frame.first == "spar" else design.chord):
+        found.append(
+            FoldWarning(
+                "mould",
+                f"no row stays on the {frame.first} all along the span: for the drape it was taken "
+                f"{drape.cloth.width:,.0f} mm wide",
+            )
+        )
+    return tuple(found)
