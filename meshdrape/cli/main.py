@@ -20,6 +20,7 @@ COMMANDS = {
     "audit": "check a finished net again from its file alone",
     "inspect": "list the faces of a mould and check its mesh",
     "mould": "make a mould by one of the scripts that come with meshdrape",
+    "validate": "recompute the study group report: every claim, its error and a verdict",
 }
 
 

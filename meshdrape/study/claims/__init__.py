@@ -1,7 +1,7 @@
 """The study group report recomputed, claim by claim: what it says, what was found, and the verdict that follows.
 
-    runs, drapes -> sections_2_3 ... section_7 -> claim + judgement     a Claim for each statement
-                 -> views                                               what the report's figures show, from the same runs
+runs, drapes -> sections_2_3 ... section_7 -> claim + judgement     a Claim for each statement
+             -> views                                               what the report's figures show, from the same runs
 """
 
 from __future__ import annotations

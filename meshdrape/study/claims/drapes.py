@@ -112,7 +112,9 @@ class DrapedFold:
     def node_error(self) -> float:
         """Largest distance between a node of the drape and its like, m, within the spar's height and the span."""
         on, y = self.reference.sheet.on_spar, self.reference.node[..., 1]
-        inside = (self.reference.depth <= self.reference.sheet.height) & (y >= 0) & (y <= self.reference.sheet.fold.span)
+        inside = (
+            (self.reference.depth <= self.reference.sheet.height) & (y >= 0) & (y <= self.reference.sheet.fold.span)
+        )
         off = np.linalg.norm(self.node - self.reference.node, axis=-1)[inside & (on | np.isfinite(self.node[..., 0]))]
         return float(np.nanmax(off))
 
@@ -123,17 +125,20 @@ class DrapedFold:
         return float(np.abs(self.shear - self.reference.shear)[cells].max())
 
 
-def drape_fold(fold: Fold, spacing: float, height: float, facet: float, gamma: Gamma = 0.0) -> DrapedFold:
+def drape_fold(
+    fold: Fold, spacing: float, height: float, facet: float, gamma: Gamma = 0.0, chord: float = 0.0
+) -> DrapedFold:
     """Lay a sheet on the wing from its root and over the crease, as `discrete_net` does, on a mesh of the mould.
 
     Lengths in metres. The seed is the root's end of the row farthest from the crease; the left-most ribbon is turned
-    where it comes over the crease, by gamma less what it turns of itself.
+    where it comes over the crease, by gamma less what it turns of itself. The wing reaches to x = chord, or as far as
+    that row if it is more.
     """
     reference = discrete_net(fold, spacing, height, gamma)
     sheet = reference.sheet
     x = float(sheet.x[0])
     turn = float(fold.psi(0.0)) - sheet.gamma  # right-handed about the spar's normal, -x: towards smaller y
-    mould = fold_mould(fold, x + 2.5 * spacing, height, facet)
+    mould = fold_mould(fold, max(chord, x + 2.5 * spacing), height, facet)
     seed = MM * np.array([x, 0.0, float(fold.wing(0.0))])
     direction = np.array([0.0, 1.0, float(fold.wing.slope(0.0))])
     fabric = Fabric(MM * spacing)

@@ -146,9 +146,7 @@ def condition(passed_but_fails: int, refused_but_works: int, designs: int) -> Ju
 
 def named_region(error_there: float, error_elsewhere: float, limit: float) -> Judgement:
     """A statement about one region that may be true of the other, rad: HOLDS, SWAPPED or WRONG."""
-    verdict = (
-        Verdict.HOLDS if error_there <= limit else Verdict.SWAPPED if error_elsewhere <= limit else Verdict.WRONG
-    )
+    verdict = Verdict.HOLDS if error_there <= limit else Verdict.SWAPPED if error_elsewhere <= limit else Verdict.WRONG
     error, most = float(np.degrees(error_there)), float(np.degrees(limit))
     return Judgement(verdict, error, "deg", f"error at most {most:.3g} deg, in the region named or in the other")
 
@@ -173,7 +171,7 @@ def occurs(measure: float, least: float, unit: str = "") -> Judgement:
 
 
 def counterexample(exception: float, limit: float, unit: str = "") -> Judgement:
-    """"There is no other": WRONG if what it excludes was found to occur, to within a limit of 0, else HOLDS."""
+    """ "There is no other": WRONG if what it excludes was found to occur, to within a limit of 0, else HOLDS."""
     exists = abs(exception) <= limit
     return Judgement(
         Verdict.WRONG if exists else Verdict.HOLDS, abs(exception), unit, f"not contradicted within {limit:.3g} {unit}"

@@ -116,7 +116,9 @@ def straightness(runs: Runs) -> Claim:
     fold = runs.flat_spar
     closed, exact = characteristic_net(fold, 0.02, 0.5), discrete_net(fold, 0.02, 0.5)
     off = np.degrees(np.abs(closed.shear - exact.shear)[exact.region > 0].max())
-    found = f"Characteristics of section 6 against the discrete net of section 5: cell by cell to {number(float(off), 4)}°."
+    found = (
+        f"Characteristics of section 6 against the discrete net of section 5: cell by cell to {number(float(off), 4)}°."
+    )
     return Claim("5, 6", "The flat-spar solution and the rotations of section 6 are the same net.", found,
                  equality(off, 0.02, "deg"))  # fmt: skip
 

@@ -163,7 +163,9 @@ def sharper_maximum(runs: Runs) -> Claim:
         both = [f"{angle(one[0])}/{angle(one[1])}" for one in (foretold, true)]
         words.append(f"{family.name} {both[0]} against {both[1]}")
     found = (
-        "Wing-fed/ribbon-fed, the same drapes: " + "; ".join(words) + ". From one ribbon to the next ψ changes by up to "
+        "Wing-fed/ribbon-fed, the same drapes: "
+        + "; ".join(words)
+        + ". From one ribbon to the next ψ changes by up to "
         f"{angle(max(finest) / 2)}."
     )
     return Claim("6.4, sharpened", "Shear is the difference of the rotations of a cell's ribbons: its maximum over the "
@@ -197,7 +199,9 @@ def best_gamma(runs: Runs) -> Claim:
         with_best = runs.draped_real(k, reach.gamma_best).max_shear(RIBBON_FED)
         estimate.append(with_middle)
         best.append(with_best)
-        words.append(f"{family.name} {angle(with_middle)} at {angle(middle)}, {angle(with_best)} at {angle(reach.gamma_best)}")
+        words.append(
+            f"{family.name} {angle(with_middle)} at {angle(middle)}, {angle(with_best)} at {angle(reach.gamma_best)}"
+        )
     found = "Ribbon-fed shear draped at the middle of all ψ, and of the ψ within reach: " + "; ".join(words) + "."
     return Claim("(31)", "γ = (ψ_max + ψ_min)/2 makes the ribbon-fed shear least.", found,
                  optimum(estimate, best, np.radians(0.1)),

@@ -171,7 +171,9 @@ def cylinder_askew(runs: Runs) -> Claim:
     """After (39): a cylinder laid askew must shear."""
     del runs
     epsilon = 0.01
-    sections, geodesics = (float(_solved(weak_surface(*ASKEW, epsilon), start).sine[-1, -1]) for start in (plane_section, geodesic))
+    sections, geodesics = (
+        float(_solved(weak_surface(*ASKEW, epsilon), start).sine[-1, -1]) for start in (plane_section, geodesic)
+    )
     draped = [_draped_corner(*ASKEW, epsilon, sections=which) for which in (True, False)]
     formula = float(weak_sine(*ASKEW, epsilon, 1, 1))
     found = (
@@ -269,7 +271,9 @@ def _edge_drape(epsilon: float, m: float) -> tuple[FloatArray, FloatArray, Float
 
 def equation_43(runs: Runs) -> Claim:
     """(43), where rows begin beyond the edge."""
-    return _equation_43(runs, "(43)", "sin θ = ε |f'| [1 - 1 / sqrt(1 + m²)], rows that begin beyond the edge.", begun=True)
+    return _equation_43(
+        runs, "(43)", "sin θ = ε |f'| [1 - 1 / sqrt(1 + m²)], rows that begin beyond the edge.", begun=True
+    )
 
 
 def equation_43_strip(runs: Runs) -> Claim:
@@ -290,7 +294,8 @@ def _equation_43(runs: Runs, place: str, says: str, *, begun: bool) -> Claim:
     exact = abs(float(straight_edge_turn(-0.1 * 2 * 0.99, m)))
     formula = float(np.arcsin(straight_edge_sine(0.1 * 2 * 0.99, m)))
     found = (
-        "f = -y², m = 1, y up to 1, draped at 20 and 10 mm: sin θ off by up to " + ", ".join(words)
+        "f = -y², m = 1, y up to 1, draped at 20 and 10 mm: sin θ off by up to "
+        + ", ".join(words)
         + f". Exact turn at y = 0.99, ε = 0.1: {angle(exact, 4)}, (43) {angle(formula, 4)}."
     )
     return Claim(place, says, found, first_order(errors, 1.5),

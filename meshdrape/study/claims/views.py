@@ -17,7 +17,6 @@ from meshdrape.theory import (
     discrete_net,
     gap,
     linear_deviation,
-    parabola_deviation,
     slope_criterion,
     wing_fed_bound,
     width_for,
@@ -25,6 +24,8 @@ from meshdrape.theory import (
 )
 
 FloatArray = NDArray[np.float64]
+
+CHORD = 4.5  # x at which the wing of figure 5 ends, m
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,11 @@ class SheetView:
 
 @dataclass(frozen=True, eq=False)
 class ProfileView:
-    """Figures 5 and 6: the origami spar and one that deviates from it; and the deformed one draped."""
+    """Figures 5 and 6: the origami spar, deviations f and f' from it by name, and a deformed one draped."""
 
     y: FloatArray
     origami: FloatArray
-    deviations: dict[str, FloatArray]
+    deviations: dict[str, tuple[FloatArray, FloatArray]]
     draped: DrapedFold
 
 
@@ -145,7 +146,7 @@ class ConvergenceView:
 class Views:
     """All of them."""
 
-    weave: WeaveView
+    weaves: tuple[WeaveView, ...]
     figure_4: SheetView
     profiles: ProfileView
     flat_spar: SheetView
@@ -157,10 +158,8 @@ class Views:
 
 def make_views(runs: Runs) -> Views:
     """Run and gather them."""
-    pitch = 5.0
-    width = width_for(LOCKING, pitch)
     return Views(
-        WeaveView(pitch, width, LOCKING, (gap(width, pitch, 0.0), gap(width, pitch, LOCKING))),
+        (_weave(LOCKING), _weave(float(np.radians(30.0)))),
         sheet_view(drape_fold(runs.figure_4, 0.05, 0.6, 5e-4)),
         _profiles(runs),
         sheet_view(drape_fold(runs.flat_spar, 0.1, 0.6, 1e-3)),
@@ -169,6 +168,11 @@ def make_views(runs: Runs) -> Views:
         _convergence(runs),
         LOCKING,
     )
+
+
+def _weave(locking: float, pitch: float = 5.0) -> WeaveView:
+    width = width_for(locking, pitch)
+    return WeaveView(pitch, width, locking, (gap(width, pitch, 0.0), gap(width, pitch, locking)))
 
 
 def sheet_view(draped: DrapedFold) -> SheetView:
@@ -201,9 +205,10 @@ def sheet_view(draped: DrapedFold) -> SheetView:
 
 def _profiles(runs: Runs) -> ProfileView:
     y = np.linspace(0.0, SPAN, 401)
-    chosen = {family.name: np.asarray(family.make(2 * family.amplitudes[0])(y)) for family in FAMILIES}
-    deformed = Fold(runs.wing, runs.wing + parabola_deviation(0.3, SPAN))
-    return ProfileView(y, runs.wing(y), chosen, drape_fold(deformed, runs.spacing, HEIGHT, runs.facet))
+    made = {family.name: family.make(family.amplitudes[1]) for family in FAMILIES}
+    chosen = {name: (f(y), f.slope(y)) for name, f in made.items()}
+    draped = drape_fold(runs.real(2), runs.spacing, HEIGHT, runs.facet, chord=CHORD)
+    return ProfileView(y, runs.wing(y), chosen, draped)
 
 
 def _turn() -> TurnView:
@@ -224,7 +229,7 @@ def _turn() -> TurnView:
 
 def _criteria(runs: Runs, k: int) -> CriteriaView:
     family = FAMILIES[k]
-    amplitude = np.linspace(0.0, 1.5, 7 if runs.quick else 16)[1:] * family.amplitudes[1]
+    amplitude = np.linspace(0.0, 1.25, 7 if runs.quick else 16) * family.amplitudes[1]
     slope, spread, upright, best = [], [], [], []
     for c in amplitude:
         fold = family.fold(float(c))
@@ -256,6 +261,10 @@ def _convergence(runs: Runs) -> ConvergenceView:
     for h in spacing[: 2 if runs.quick else 4]:
         one = drape_fold(runs.figure_4, float(h), 0.6, 5e-4)
         draped.append(
-            (float(h), limit.ribbon_fed.shear - one.max_shear(RIBBON_FED), limit.wing_fed.shear - one.max_shear(WING_FED))
+            (
+                float(h),
+                limit.ribbon_fed.shear - one.max_shear(RIBBON_FED),
+                limit.wing_fed.shear - one.max_shear(WING_FED),
+            )
         )
     return ConvergenceView(spacing, ribbon, wing, (orders[0], orders[1]), np.array(draped))
