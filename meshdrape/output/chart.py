@@ -86,15 +86,15 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def png(figure: Figure, dpi: int = DPI) -> bytes:
-    """The figure as PNG with a palette of 256 colours: no chart needs more, and it is a third of the size."""
+def png(figure: Figure, dpi: int = DPI, *, palette: bool = True) -> bytes:
+    """The figure as PNG, with a palette of 256 colours unless it shades: a chart needs no more, at half the size."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
     figure.set_dpi(dpi)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    return _packed(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3]))
+    return _packed(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3]), palette=palette)
 
 
 def packed(picture: bytes, width: int) -> bytes:
@@ -104,14 +104,16 @@ def packed(picture: bytes, width: int) -> bytes:
     image = Image.open(io.BytesIO(picture)).convert("RGB")
     if image.width > width:
         image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
-    return _packed(image)
+    return _packed(image, palette=True)
 
 
-def _packed(image: Any) -> bytes:
+def _packed(image: Any, *, palette: bool) -> bytes:
     from PIL import Image
 
     out = io.BytesIO()
-    image.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(out, "PNG", optimize=True)
+    if palette:
+        image = image.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    image.save(out, "PNG", optimize=True)
     return out.getvalue()
 
 

@@ -48,7 +48,7 @@ def draw_weave(weaves: tuple[WeaveView, ...]) -> bytes:
 
 
 def _ribbons(ax: Axes, weave: WeaveView, shear: float) -> None:
-    """Plain weave of 5 by 5 ribbons, all in full below and the weft again where it lies above; it leans by the shear."""
+    """Plain weave of 5 by 5 ribbons: warp over weft, and the weft again where it lies above."""
     from matplotlib.patches import Polygon
 
     count = 5
@@ -156,8 +156,8 @@ def _spar_sheet(ax: Axes, view: SheetView, tints: bool = True) -> None:
         here = view.region == region
         middle = np.nanmean(np.stack([view.spar[:-1, :-1][here], view.spar[1:, 1:][here]]), axis=(0, 1))
         inside = max(float(middle[1]), float(np.interp(middle[0], *below.T)) + 0.15)
-        ax.text(middle[0], inside, name, fontsize=20, weight="bold", ha="center", va="center",
-                bbox={"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": FAINT, "linewidth": 0.8})  # fmt: skip
+        plate = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": FAINT, "linewidth": 0.8}
+        ax.text(middle[0], inside, name, fontsize=20, weight="bold", ha="center", va="center", bbox=plate)
 
 
 def draw_profiles(view: ProfileView) -> bytes:

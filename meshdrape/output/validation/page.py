@@ -131,13 +131,15 @@ def _pictures(views: Views) -> Iterator[_Picture]:
     yield _Picture(
         "weave", "Figure 2: the weave at zero and at critical shear",
         "Above, a fabric that locks at 7°: its ribbons leave gaps of less than a hundredth of their pitch. Below, one "
-        "of narrower ribbons, for the eye. Pitches along the ribbons are kept; gaps close with the cosine of the shear.",
+        "of narrower ribbons, for the eye. Pitches along the ribbons are kept; gaps close with the cosine of "
+        "the shear.",
         draw_weave(views.weaves),
     )  # fmt: skip
     yield _Picture(
         "regions", "Figure 4: wing and spar rolled out",
         "g_w = 0.2 y², g_s = 0.4 y², draped on a mesh at 50 mm, γ = 0. In region I rows start on the left-most ribbon, "
-        "in region II they come from the wing. Cells across the edge, and those between the last row of one kind and the "
+        "in region II they come from the wing. Cells across the edge, and those between the last row of one "
+        "kind and the "
         "first of the other, belong to neither.",
         draw_flattened(views.figure_4),
     )  # fmt: skip

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from meshdrape.mould import Mould
-from meshdrape.theory import Fold, FoldNet, discrete_net
+from meshdrape.theory import Fold, FoldNet, Profile, discrete_net
 from meshdrape.theory.sheet import Gamma
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 MM = 1000.0  # folds are in metres here
 
 
-def ruled_mould(crease: FloatArray, wing: ArrayLike, spar: ArrayLike) -> Mould:
+def ruled_mould(crease: FloatArray, wing: FloatArray, spar: FloatArray) -> Mould:
     """Two ruled strips that meet in a polyline.
 
     Parameters
@@ -48,9 +48,15 @@ def fold_mould(fold: Fold, chord: float, height: float, facet: float, before: fl
     The first facet begins `before` of its width ahead of y = 0: by a half it is tangent to the crease there.
     """
     y = (np.arange(int(np.ceil(fold.span / facet)) + 2) - before) * facet
-    crease = MM * np.stack([fold.spar(y), y, fold.wing(y)], axis=1)
+    crease = MM * np.stack([_curving_on(fold.spar, y), y, _curving_on(fold.wing, y)], axis=1)
     wing = np.stack([MM * chord - crease[:, 0], 0 * y, 0 * y], axis=1)
-    return ruled_mould(crease, wing, (0.0, 0.0, -MM * height))
+    return ruled_mould(crease, wing, np.array([0.0, 0.0, -MM * height]))
+
+
+def _curving_on(profile: Profile, y: FloatArray) -> FloatArray:
+    """A profile that keeps its curvature ahead of y = 0, where it would otherwise go on straight."""
+    start = np.zeros(())
+    return np.asarray(profile(y) + np.where(y < 0, profile.bend(start) / 2 * y**2, 0.0))
 
 
 @dataclass(frozen=True, eq=False)

@@ -171,7 +171,7 @@ def occurs(measure: float, least: float, unit: str = "") -> Judgement:
 
 
 def counterexample(exception: float, limit: float, unit: str = "") -> Judgement:
-    """ "There is no other": WRONG if what it excludes was found to occur, to within a limit of 0, else HOLDS."""
+    """A claim that there is no other: WRONG if what it excludes was found, to within a limit of 0, else HOLDS."""
     exists = abs(exception) <= limit
     return Judgement(
         Verdict.WRONG if exists else Verdict.HOLDS, abs(exception), unit, f"not contradicted within {limit:.3g} {unit}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshdrape.study.claims.claim import Claim, angle, number
 from meshdrape.study.claims.judgement import Verdict, criterion, equality, first_order, occurs, printed, signed
@@ -23,6 +24,8 @@ from meshdrape.theory import (
     within_reach,
 )
 
+FloatArray = NDArray[np.float64]
+
 SLOPES = np.tan(np.radians([3.0, 7.0, 15.0]))  # of the real wing
 
 
@@ -38,11 +41,16 @@ def origami_link(runs: Runs) -> Claim:
         f"Along the curve g_w itself, from its arc length: as printed off by {100 * np.abs(as_printed).max():.2f} % at "
         f"the root of the real wing, with the square root by {number(100 * np.abs(with_root).max(), 3)} %."
     )
-    return Claim("(10)", "l = λ / (1 + g'²).", found, printed(as_printed, with_root, 1e-4),
-                 ((Verdict.MISPRINT, "l = λ / sqrt(1 + g'²), as (8) and (9) have it."),))  # fmt: skip
+    return Claim(
+        "(10)",
+        "l = λ / (1 + g'²).",
+        found,
+        printed(as_printed, with_root, 1e-4),
+        ((Verdict.MISPRINT, "l = λ / sqrt(1 + g'²), as (8) and (9) have it."),),
+    )
 
 
-def _slopes() -> tuple[np.ndarray, np.ndarray]:
+def _slopes() -> tuple[FloatArray, FloatArray]:
     g, f = np.meshgrid(SLOPES, [-0.1, -0.03, 0.05, 0.1])
     return g.ravel(), f.ravel()
 
@@ -59,8 +67,13 @@ def link_equation(runs: Runs) -> Claim:
         f"With S from (18), λ = 1, slopes of the real wing: the last term left out the line is off by "
         f"{np.abs(as_printed).max():.3f}, read as 2 l S by {np.abs(corrected).max():.0e}."
     )
-    return Claim("before (17)", "λ² ≈ ... + l² + S² + 2 l s, with an s that is defined nowhere.", found,
-                 printed(as_printed, corrected, 1e-12), ((Verdict.MISPRINT, "2 l S."),))  # fmt: skip
+    return Claim(
+        "before (17)",
+        "λ² ≈ ... + l² + S² + 2 l s, with an s that is defined nowhere.",
+        found,
+        printed(as_printed, corrected, 1e-12),
+        ((Verdict.MISPRINT, "2 l S."),),
+    )
 
 
 def equation_17(runs: Runs) -> Claim:
@@ -76,8 +89,13 @@ def equation_17(runs: Runs) -> Claim:
         f"First line with g' as printed: {np.abs(first).max():.4f} where 0 is meant; with g'²: "
         f"{np.abs(corrected).max():.0e}; second line: {np.abs(second).max():.0e}."
     )
-    return Claim("(17)", "0 = g'(S² + 2 l S) + ...", found,
-                 printed(first, [*corrected, *second], 1e-12), ((Verdict.MISPRINT, "g'²; the second line is right."),))  # fmt: skip
+    return Claim(
+        "(17)",
+        "0 = g'(S² + 2 l S) + ...",
+        found,
+        printed(first, [*corrected, *second], 1e-12),
+        ((Verdict.MISPRINT, "g'²; the second line is right."),),
+    )
 
 
 def equation_18(runs: Runs) -> Claim:
@@ -86,9 +104,11 @@ def equation_18(runs: Runs) -> Claim:
     g, f = _slopes()
     dy = origami_advance(g, 1.0) + lateral_approach(g, f, 1.0)
     off = np.sqrt(((g + f) * dy) ** 2 + dy**2 + (f * dy) ** 2) - 1
-    found = f"A link that advances by l + S and rises by f' and g' + f' times that is one spacing long to {np.abs(off).max():.0e}."
-    return Claim("(18), root", "S = -l + l sqrt(1 - 2 (f'² + f' g') / (1 + (g' + f')² + f'²)).", found,
-                 equality(off, 1e-12))  # fmt: skip
+    worst = np.abs(off).max()
+    found = f"A link that advances by l + S and rises by f' and g' + f' times that is one spacing long to {worst:.0e}."
+    return Claim(
+        "(18), root", "S = -l + l sqrt(1 - 2 (f'² + f' g') / (1 + (g' + f')² + f'²)).", found, equality(off, 1e-12)
+    )
 
 
 def equation_18_expanded(runs: Runs) -> Claim:
@@ -103,8 +123,12 @@ def equation_18_expanded(runs: Runs) -> Claim:
         f"S falls with a power {order[0]:.2f} of both slopes together, the expansion's error with {order[1]:.2f}. With "
         f"the wing's own slope kept, S is {100 * abs(at_root):.1f} % of l at its root for f' = 0.1."
     )
-    return Claim("(18), expanded", "S is quadratic in the slopes of f and g and can be neglected to first order.", found,
-                 first_order(exact, 1.9))  # fmt: skip
+    return Claim(
+        "(18), expanded",
+        "S is quadratic in the slopes of f and g and can be neglected to first order.",
+        found,
+        first_order(exact, 1.9),
+    )
 
 
 def rows_follow_f(runs: Runs) -> Claim:
@@ -123,8 +147,13 @@ def rows_follow_f(runs: Runs) -> Claim:
         f"Slope dz/dy of the draped rows over f', {steep.sum():,} cells of the real wing, parabola: "
         f"{ratio.min():.3f} to {ratio.max():.3f}."
     )
-    return Claim("(11), (19)", "Rows are shifted by z = -f, and yet tan θ = dz/dy = +f'.", found,
-                 signed(ratio - 1, np.abs(ratio) - 1, 0.05), ((Verdict.SIGN, "Only the modulus is meant."),))  # fmt: skip
+    return Claim(
+        "(11), (19)",
+        "Rows are shifted by z = -f, and yet tan θ = dz/dy = +f'.",
+        found,
+        signed(ratio - 1, np.abs(ratio) - 1, 0.05),
+        ((Verdict.SIGN, "Only the modulus is meant."),),
+    )
 
 
 def equation_19(runs: Runs) -> Claim:
@@ -141,8 +170,12 @@ def equation_19(runs: Runs) -> Claim:
         f"Against ψ at the edge, all slopes made small together, the error falls with a power {order:.2f}. On the real "
         f"wing, f alone made small, {100 * missing:.1f} % too large remain at the root: a factor sqrt(1 + g_w'²)."
     )
-    return Claim("(19)", "To first order the horizontal ribbons are shifted by f, and tan θ = f'.", found,
-                 first_order(np.degrees(errors), 1.9, "deg"))  # fmt: skip
+    return Claim(
+        "(19)",
+        "To first order the horizontal ribbons are shifted by f, and tan θ = f'.",
+        found,
+        first_order(np.degrees(errors), 1.9, "deg"),
+    )
 
 
 def equation_20_sign(runs: Runs) -> Claim:
@@ -156,12 +189,18 @@ def equation_20_sign(runs: Runs) -> Claim:
         true.append(float(np.abs(Fold(wing, f).psi(y)).max()))  # one region: rows from the left ribbon, γ = 0
     del runs
     found = (
-        f"Flat wing, f = -0.1 y: foretold {angle(estimates[0])}, found {angle(true[0])}; f = -y²/20: {angle(estimates[1])}"
+        f"Flat wing, f = -0.1 y: foretold {angle(estimates[0])}, found {angle(true[0])}; f = -y²/20: "
+        f"{angle(estimates[1])}"
         f" and {angle(true[1])}. With |f'|: {angle(moduli[0])} and {angle(moduli[1])}."
     )
     error = [np.degrees(np.subtract(values, true)) for values in (estimates, moduli)]
-    return Claim("(20), sign", "θ_max = arctan(max f').", found, signed(*error, 1e-6, "deg"),
-                 ((Verdict.SIGN, "arctan(max |f'|)."),))  # fmt: skip
+    return Claim(
+        "(20), sign",
+        "θ_max = arctan(max f').",
+        found,
+        signed(error[0], error[1], 1e-6, "deg"),
+        ((Verdict.SIGN, "arctan(max |f'|)."),),
+    )
 
 
 def equation_20_flat(runs: Runs) -> Claim:
@@ -177,8 +216,12 @@ def equation_20_flat(runs: Runs) -> Claim:
         f"Rows from the left ribbon, γ = 0: off by {angle(abs(off[0]))} over a flat wing, {angle(abs(off[1]))} over a "
         f"flat spar."
     )
-    return Claim("(20), one side flat", "θ_max = arctan(max |f'|), where g_w' = 0 or g_s' = 0 and the rows start on the"
-                 " left ribbon, upright.", found, equality(np.degrees(off), 1e-9, "deg"))  # fmt: skip
+    return Claim(
+        "(20), one side flat",
+        "θ_max = arctan(max |f'|), where g_w' = 0 or g_s' = 0 and the rows start on the left ribbon, upright.",
+        found,
+        equality(np.degrees(off), 1e-9, "deg"),
+    )
 
 
 def equation_20_upright(runs: Runs) -> Claim:
@@ -222,9 +265,13 @@ def shear_of_the_wing(runs: Runs) -> Claim:
         f"Sheet laid undeformed on the wing, five drapes: at most {angle(on_wing)} in {count:,} cells of the wing, up "
         f"to {angle(astride)} in cells that straddle the edge, {angle(most)} on the spar."
     )
-    return Claim("4, end", "There is some extra shear on the wing cover, smaller than that on the spar.", found,
-                 occurs(float(np.degrees(on_wing)), 0.01, "deg"),
-                 ((Verdict.WRONG, "None, but for the cells that straddle the edge."),))  # fmt: skip
+    return Claim(
+        "4, end",
+        "There is some extra shear on the wing cover, smaller than that on the spar.",
+        found,
+        occurs(float(np.degrees(on_wing)), 0.01, "deg"),
+        ((Verdict.WRONG, "None, but for the cells that straddle the edge."),),
+    )
 
 
 CLAIMS = (

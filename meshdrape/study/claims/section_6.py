@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshdrape.study.claims.claim import Claim, angle, number
 from meshdrape.study.claims.judgement import (
@@ -31,6 +32,8 @@ from meshdrape.theory import (
     within_reach,
 )
 
+FloatArray = NDArray[np.float64]
+
 
 def parallel_segments(runs: Runs) -> Claim:
     """6.1: across a row all transverse segments are parallel."""
@@ -40,11 +43,17 @@ def parallel_segments(runs: Runs) -> Claim:
     mixed = shear[1:, 1:] - shear[1:, :-1] - shear[:-1, 1:] + shear[:-1, :-1]
     mixed = mixed[four & np.isfinite(mixed)]
     found = (
-        f"Draped figure 4: shear is a number of the column less a number of the row, to {angle(float(np.abs(mixed).max()))}"
+        "Draped figure 4: shear is a number of the column less a number of the row, to "
+        f"{angle(float(np.abs(mixed).max()))}"
         f" over {len(mixed):,} blocks of four cells."
     )
-    return Claim("6.1", "On a developable surface cells are parallelograms; along a row or a column all transverse "
-                 "segments are parallel.", found, equality(np.degrees(mixed), 1e-6, "deg"))  # fmt: skip
+    return Claim(
+        "6.1",
+        "On a developable surface cells are parallelograms; along a row or a column all transverse "
+        "segments are parallel.",
+        found,
+        equality(np.degrees(mixed), 1e-6, "deg"),
+    )
 
 
 def scales(runs: Runs) -> Claim:
@@ -62,16 +71,17 @@ def scales(runs: Runs) -> Claim:
         f"{min(ratio):.3f} to {max(ratio):.3f} of the bound."
     )
     excess = np.maximum(np.array(ratio) - 1, 0)
-    return Claim("(24)", "Between adjacent ribbons slopes change by at most 4 sqrt(λ g''_max).", found,
-                 equality(excess, 0.0))  # fmt: skip
+    return Claim(
+        "(24)", "Between adjacent ribbons slopes change by at most 4 sqrt(λ g''_max).", found, equality(excess, 0.0)
+    )
 
 
-def _edge_chords(fold: Fold) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _edge_chords(fold: Fold) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stations, and chords of the crease in space over 1e-4 of the span about them."""
     y = np.linspace(0.05, 0.95, 19) * fold.span
     step = 5e-5 * fold.span
-    ends = [np.stack([fold.spar(at), at, fold.wing(at)], axis=-1) for at in (y - step, y + step)]
-    return y, *ends
+    before, after = (np.stack([fold.spar(at), at, fold.wing(at)], axis=-1) for at in (y - step, y + step))
+    return y, before, after
 
 
 def edge_on_wing(runs: Runs) -> Claim:
@@ -82,7 +92,7 @@ def edge_on_wing(runs: Runs) -> Claim:
     measured = np.arctan2(b[:, 0] - a[:, 0], along)
     off = np.degrees(fold.alpha(y) - measured)
     found = f"Against chords of the crease in space, real wing: off by {number(float(np.abs(off).max()), 4)}° at most."
-    return Claim("(26)", "tan α = g_s' / sqrt(1 + g_w'²).", found, equality(off, 1e-4, "deg"))  # fmt: skip
+    return Claim("(26)", "tan α = g_s' / sqrt(1 + g_w'²).", found, equality(off, 1e-4, "deg"))
 
 
 def edge_on_spar(runs: Runs) -> Claim:
@@ -96,9 +106,13 @@ def edge_on_spar(runs: Runs) -> Claim:
         f"Against chords of the crease in space: (dg_w/dy)(dy/ds_w) is off by {np.abs(off[0]).max():.3f}°, the last "
         f"expression by {number(float(np.abs(off[1]).max()), 4)}°."
     )
-    return Claim("(27)", "tan β = (dg_w/dy)(dy/ds_w) = g_w' / sqrt(1 + g_s'²), in coordinates (s_s, x).", found,
-                 printed(*off, 1e-4, "deg"),
-                 ((Verdict.MISPRINT, "dy/ds_s in the middle; the coordinates are (s_s, z) and, for α, (s_w, x)."),))  # fmt: skip
+    return Claim(
+        "(27)",
+        "tan β = (dg_w/dy)(dy/ds_w) = g_w' / sqrt(1 + g_s'²), in coordinates (s_s, x).",
+        found,
+        printed(off[0], off[1], 1e-4, "deg"),
+        ((Verdict.MISPRINT, "dy/ds_s in the middle; the coordinates are (s_s, z) and, for α, (s_w, x)."),),
+    )
 
 
 def turn_at_the_edge(runs: Runs) -> Claim:
@@ -123,8 +137,12 @@ def turn_at_the_edge(runs: Runs) -> Claim:
         f"{number(float(np.abs(off).max()), 3)}° of ψ in the middle of their column; the last column of the drape is "
         f"turned by {angle(float(turn))}, ψ there is {angle(mid)}."
     )
-    return Claim("(28)", "The net on the spar is turned by ψ = β - α where it crossed the edge.", found,
-                 equality([*off, float(np.degrees(turn - mid))], 0.1, "deg"))  # fmt: skip
+    return Claim(
+        "(28)",
+        "The net on the spar is turned by ψ = β - α where it crossed the edge.",
+        found,
+        equality([*off, float(np.degrees(turn - mid))], 0.1, "deg"),
+    )
 
 
 def wing_fed_maximum(runs: Runs) -> Claim:
@@ -168,9 +186,13 @@ def sharper_maximum(runs: Runs) -> Claim:
         + ". From one ribbon to the next ψ changes by up to "
         f"{angle(max(finest) / 2)}."
     )
-    return Claim("6.4, sharpened", "Shear is the difference of the rotations of a cell's ribbons: its maximum over the "
-                 "rows and columns that meet.", found,
-                 equality(np.degrees(off), float(np.degrees(max(finest))), "deg"))  # fmt: skip
+    return Claim(
+        "6.4, sharpened",
+        "Shear is the difference of the rotations of a cell's ribbons: its maximum over the "
+        "rows and columns that meet.",
+        found,
+        equality(np.degrees(off), float(np.degrees(max(finest))), "deg"),
+    )
 
 
 def region_names(runs: Runs) -> Claim:
@@ -180,12 +202,17 @@ def region_names(runs: Runs) -> Claim:
     draped = runs.draped_figure_4(gamma)
     one, two = draped.max_shear(RIBBON_FED), draped.max_shear(WING_FED)
     found = (
-        f"Figure 4, γ = {angle(gamma)}, draped: (31) foretells {angle(foretold)} for its region II; rows from the wing, "
+        f"Figure 4, γ = {angle(gamma)}, draped: (31) foretells {angle(foretold)} for its region II; rows from "
+        "the wing, "
         f"region II of section 3.4, reach {angle(two)}, rows from the left ribbon, its region I, {angle(one)}."
     )
-    return Claim("(29)-(31)", "(29) speaks of region I, (30) and (31) of region II.", found,
-                 named_region(abs(two - foretold), abs(one - foretold), 0.05 * foretold),
-                 ((Verdict.SWAPPED, "Swapped against section 3.4: (29) is its region II, (30) and (31) its region I."),))  # fmt: skip
+    return Claim(
+        "(29)-(31)",
+        "(29) speaks of region I, (30) and (31) of region II.",
+        found,
+        named_region(abs(two - foretold), abs(one - foretold), 0.05 * foretold),
+        ((Verdict.SWAPPED, "Swapped against section 3.4: (29) is its region II, (30) and (31) its region I."),),
+    )
 
 
 def best_gamma(runs: Runs) -> Claim:
@@ -203,9 +230,13 @@ def best_gamma(runs: Runs) -> Claim:
             f"{family.name} {angle(with_middle)} at {angle(middle)}, {angle(with_best)} at {angle(reach.gamma_best)}"
         )
     found = "Ribbon-fed shear draped at the middle of all ψ, and of the ψ within reach: " + "; ".join(words) + "."
-    return Claim("(31)", "γ = (ψ_max + ψ_min)/2 makes the ribbon-fed shear least.", found,
-                 optimum(estimate, best, np.radians(0.1)),
-                 ((Verdict.NOT_BEST, "Best is the middle of the ψ of those columns that reach ribbon-fed rows."),))  # fmt: skip
+    return Claim(
+        "(31)",
+        "γ = (ψ_max + ψ_min)/2 makes the ribbon-fed shear least.",
+        found,
+        optimum(estimate, best, np.radians(0.1)),
+        ((Verdict.NOT_BEST, "Best is the middle of the ψ of those columns that reach ribbon-fed rows."),),
+    )
 
 
 def effective_constraint(runs: Runs) -> Claim:
@@ -220,12 +251,17 @@ def effective_constraint(runs: Runs) -> Claim:
             words.append(f"{family.name}: {angle(reach.ribbon_fed.shear)} against {angle(reach.wing_fed.shear)}")
     worst = int(np.argmax(excess))
     found = (
-        f"{len(excess)} pairs of design and γ, shear within reach: the ribbon-fed one exceeds the wing-fed one by up to "
+        f"{len(excess)} pairs of design and γ, shear within reach: the ribbon-fed one exceeds the wing-fed one "
+        "by up to "
         f"{angle(excess[worst])} ({words[worst]})."
     )
-    return Claim("after (31)", "For any γ between ψ_min and ψ_max the wing-fed region is the effective constraint.",
-                 found, equality(np.degrees(excess), 0.1, "deg"),
-                 ((Verdict.WRONG, "True of the bounds (29) and (30), not of the shear within reach."),))  # fmt: skip
+    return Claim(
+        "after (31)",
+        "For any γ between ψ_min and ψ_max the wing-fed region is the effective constraint.",
+        found,
+        equality(np.degrees(excess), 0.1, "deg"),
+        ((Verdict.WRONG, "True of the bounds (29) and (30), not of the shear within reach."),),
+    )
 
 
 def condition_32(runs: Runs) -> Claim:
@@ -245,9 +281,13 @@ def condition_32(runs: Runs) -> Claim:
         f"{designs} designs of the real wing, locking at 7°, left ribbon at its best: {passed_but_fails} pass (32) and "
         f"lock all the same, {refused_but_works} fail it and can be laid."
     )
-    return Claim("(32)", "ψ_max - ψ_min <= θ* is the condition for a sheet to be laid.", found,
-                 condition(passed_but_fails, refused_but_works, designs),
-                 ((Verdict.SUFFICIENT, "Necessary only if the extremes of ψ lie within reach of each other."),))  # fmt: skip
+    return Claim(
+        "(32)",
+        "ψ_max - ψ_min <= θ* is the condition for a sheet to be laid.",
+        found,
+        condition(passed_but_fails, refused_but_works, designs),
+        ((Verdict.SUFFICIENT, "Necessary only if the extremes of ψ lie within reach of each other."),),
+    )
 
 
 CLAIMS = (

@@ -66,14 +66,13 @@ def _dome(a: float, b: float, c: float, epsilon: float, cells: int) -> Mould:
 
 def _draped_corner(a: float, b: float, c: float, epsilon: float, *, sections: bool) -> float:
     """Sine of the shear at u = v = 1 m of a drape from plane sections or from geodesics."""
-    paths = {}
+    warp = weft = None
     if sections:
         s, field = np.linspace(-0.115, 1.195, 437), weak_surface(a, b, c, epsilon)
-        paths = {
-            "warp_path": MM * np.stack([s, 0 * s, field.z(s, 0 * s)], axis=1),
-            "weft_path": MM * np.stack([0 * s, s, field.z(0 * s, s)], axis=1),
-        }
-    net = drape(_dome(a, b, c, epsilon, 100), Fabric(25.0), (0, 0, 0), (1, 0, 0), **paths)
+        warp = MM * np.stack([s, 0 * s, field.z(s, 0 * s)], axis=1)
+        weft = MM * np.stack([0 * s, s, field.z(0 * s, s)], axis=1)
+    mould = _dome(a, b, c, epsilon, 100)
+    net = drape(mould, Fabric(25.0), (0, 0, 0), (1, 0, 0), warp_path=warp, weft_path=weft)
     shear = window(net, measure(net).cell_shear, (41, 41))
     return float(np.sin(shear[39:41, 39:41].mean()))
 
@@ -97,12 +96,18 @@ def well_posed(runs: Runs) -> Claim:
         errors.append(float(np.abs(net.node - sphere_net(1.0, net.u, net.v)).max()))
         speeds.append(max(float(np.abs(speed - 1).max()) for speed in net.speeds))
     found = (
-        f"March along the characteristics from two great circles, unit sphere, u = v = 0.8: off the sphere's own net by "
-        f"{errors[-1]:.1e} at 32 steps, falling with a power {_order(errors):.2f}; |x_u|, |x_v| off 1 by {speeds[-1]:.1e},"
+        "March along the characteristics from two great circles, unit sphere, u = v = 0.8: off the sphere's "
+        "own net by "
+        f"{errors[-1]:.1e} at 32 steps, falling with a power {_order(errors):.2f}; |x_u|, |x_v| off 1 by "
+        f"{speeds[-1]:.1e},"
         f" {_order(speeds):.2f}."
     )
-    return Claim("(33), (34)", "Fibres are characteristics; x on one and y on another give a well-defined solution.",
-                 found, equality([2 - _order(errors), 2 - _order(speeds)], 0.3))  # fmt: skip
+    return Claim(
+        "(33), (34)",
+        "Fibres are characteristics; x on one and y on another give a well-defined solution.",
+        found,
+        equality([2 - _order(errors), 2 - _order(speeds)], 0.3),
+    )
 
 
 def shear_limit(runs: Runs) -> Claim:
@@ -115,10 +120,16 @@ def shear_limit(runs: Runs) -> Claim:
     off = [np.degrees(np.arcsin(np.clip(value, 0, 1)) - np.abs(true)) for value in (as_printed, np.abs(net.sine))]
     found = (
         f"On a weak dome whose net shears by up to {angle(float(np.abs(true).max()))}: x_u y_v would make it "
-        f"{np.degrees(np.arcsin(np.clip(as_printed, 0, 1))).max():.1f}°, x_u · x_v is right to {number(float(np.abs(off[1]).max()), 6)}°."
+        f"{np.degrees(np.arcsin(np.clip(as_printed, 0, 1))).max():.1f}°, x_u · x_v is right to "
+        f"{number(float(np.abs(off[1]).max()), 6)}°."
     )
-    return Claim("(35)", "sin θ = |x_u · y_v|.", found, printed(*off, 1e-6, "deg"),
-                 ((Verdict.MISPRINT, "|x_u · x_v|, both of the place in space."),))  # fmt: skip
+    return Claim(
+        "(35)",
+        "sin θ = |x_u · y_v|.",
+        found,
+        printed(off[0], off[1], 1e-6, "deg"),
+        ((Verdict.MISPRINT, "|x_u · x_v|, both of the place in space."),),
+    )
 
 
 def equation_38(runs: Runs) -> Claim:
@@ -131,12 +142,17 @@ def equation_38(runs: Runs) -> Claim:
             u, v = np.meshgrid(net.u, net.v, indexing="ij")
             errors[name].append(float(np.abs(net.plane - weak_nodes(*DOME, epsilon, u, v)).max()))
     found = (
-        f"a, b, c = 1, 0.5, 0.7, ε from 0.02 to 0.005: the error falls with a power {_order(errors['sections']):.2f} of "
+        "a, b, c = 1, 0.5, 0.7, ε from 0.02 to 0.005: the error falls with a power "
+        f"{_order(errors['sections']):.2f} of "
         f"ε from the plane sections x = 0 and y = 0, {_order(errors['geodesics']):.2f} from geodesics."
     )
-    return Claim("(38)", "The nodes to O(ε) on a smooth surface, x = 0 on u = 0 and y = 0 on v = 0.", found,
-                 first_order(errors["sections"], 1.8),
-                 ((Verdict.FIRST_ORDER, "From those plane sections, which are geodesics only for b = 0."),))  # fmt: skip
+    return Claim(
+        "(38)",
+        "The nodes to O(ε) on a smooth surface, x = 0 on u = 0 and y = 0 on v = 0.",
+        found,
+        first_order(errors["sections"], 1.8),
+        ((Verdict.FIRST_ORDER, "From those plane sections, which are geodesics only for b = 0."),),
+    )
 
 
 def equation_39(runs: Runs) -> Claim:
@@ -153,8 +169,7 @@ def equation_39(runs: Runs) -> Claim:
         f"The error of sin θ falls with a power {_order(errors):.2f} of ε. a, b, c = 1, 0, 1, ε = 0.01, u = v = 1: "
         f"formula 0.04000, solved {exact:.5f}, draped on a mesh {one:.5f}."
     )
-    return Claim("(39)", "sin θ = 2 ε [a b u² + 2 (ac - b²) u v + b c v²].", found,
-                 first_order([*errors], 1.8))  # fmt: skip
+    return Claim("(39)", "sin θ = 2 ε [a b u² + 2 (ac - b²) u v + b c v²].", found, first_order([*errors], 1.8))
 
 
 def cylinder_along(runs: Runs) -> Claim:
@@ -163,8 +178,12 @@ def cylinder_along(runs: Runs) -> Claim:
     sine = float(np.abs(_solved(weak_surface(*PLAIN, 0.02), plane_section).sine).max())
     draped = abs(_draped_corner(*PLAIN, 0.01, sections=False))
     found = f"b = c = 0: sin θ at most {sine:.0e} solved, {draped:.0e} draped on a mesh."
-    return Claim("after (39)", "A cylinder with one weave direction along its generators needs no shear.", found,
-                 equality(np.degrees([sine, draped]), ROUND_OFF_DEG, "deg"))  # fmt: skip
+    return Claim(
+        "after (39)",
+        "A cylinder with one weave direction along its generators needs no shear.",
+        found,
+        equality(np.degrees([sine, draped]), ROUND_OFF_DEG, "deg"),
+    )
 
 
 def cylinder_askew(runs: Runs) -> Claim:
@@ -181,9 +200,13 @@ def cylinder_askew(runs: Runs) -> Claim:
         f"{draped[0]:.4f}), from geodesics {geodesics:.0e} (draped {draped[1]:.1e})."
     )
     off = [abs(value / formula - 1) for value in (sections, geodesics)]
-    return Claim("after (39)", "On a cylinder whose generators the fibres do not follow the material must shear.", found,
-                 conditional(off[0], off[1], 0.1),
-                 ((Verdict.CONDITIONAL, "Only from the plane sections as start fibres; from geodesics there is none."),))  # fmt: skip
+    return Claim(
+        "after (39)",
+        "On a cylinder whose generators the fibres do not follow the material must shear.",
+        found,
+        conditional(off[0], off[1], 0.1),
+        ((Verdict.CONDITIONAL, "Only from the plane sections as start fibres; from geodesics there is none."),),
+    )
 
 
 def equation_40(runs: Runs) -> Claim:
@@ -194,8 +217,12 @@ def equation_40(runs: Runs) -> Claim:
         net = _solved(weak_origami_surface(0.8, 0.6, epsilon), plane_section)
         errors.append(float(np.abs(net.sine - weak_origami_sine(0.8, 0.6, epsilon, net.v)[None]).max()))
     found = f"k = 0.8, c = 0.6: the error of sin θ falls with a power {_order(errors):.2f} of ε from plane sections."
-    return Claim("(40)", "On z = sqrt(ε)(k x + c y²), a fibre along the x axis, sin θ = 2 ε c k v.", found,
-                 first_order(errors, 1.8))  # fmt: skip
+    return Claim(
+        "(40)",
+        "On z = sqrt(ε)(k x + c y²), a fibre along the x axis, sin θ = 2 ε c k v.",
+        found,
+        first_order(errors, 1.8),
+    )
 
 
 def only_cylinders(runs: Runs) -> Claim:
@@ -206,7 +233,7 @@ def only_cylinders(runs: Runs) -> Claim:
     for field in (cone, weak_surface(*ASKEW, 0.05), weak_origami_surface(0.8, 0.6, 0.02)):
         start = geodesic(field, (1, 0), 0.8), geodesic(field, (0, 1), 0.8)
         if field is not cone:  # at right angles on the surface where the seed's plane slopes: turn the second
-            p, q = (float(g) for g in field.gradient(np.float64(0), np.float64(0)))
+            p, q = (float(g) for g in field.gradient(np.zeros(()), np.zeros(())))
             start = geodesic(field, (1, 0), 0.8), geodesic(field, (-p * q, 1 + p * p), 0.8)
         net = smooth_net(field, *start, (0.8, 0.8), (12, 12), levels=3)
         shear.append(float(np.abs(net.shear).max()))
@@ -214,9 +241,13 @@ def only_cylinders(runs: Runs) -> Claim:
         f"From two geodesics at right angles: a cone shears by {angle(shear[0])}, a cylinder laid askew by "
         f"{angle(shear[1])}, the surface (40) by {angle(shear[2])}."
     )
-    return Claim("after (40)", "Only a cylinder with one family of fibres along its generators needs no shear at all.",
-                 found, counterexample(float(np.degrees(max(shear))), 1e-4, "deg"),
-                 ((Verdict.WRONG, "Any developable surface will do, from two geodesics at right angles."),))  # fmt: skip
+    return Claim(
+        "after (40)",
+        "Only a cylinder with one family of fibres along its generators needs no shear at all.",
+        found,
+        counterexample(float(np.degrees(max(shear))), 1e-4, "deg"),
+        ((Verdict.WRONG, "Any developable surface will do, from two geodesics at right angles."),),
+    )
 
 
 def equation_42(runs: Runs) -> Claim:
@@ -231,12 +262,17 @@ def equation_42(runs: Runs) -> Claim:
 
         along = (place(1.0, 0.4 + step) - place(1.0, 0.4 - step)) / (2 * step)
         errors.append(float(abs(np.linalg.norm(along) - 1)))
-    found = f"f = sin y, m = 1.3, put into (33): |x_v| is off 1 by {errors[-1]:.1e} at ε = 0.005, a power {_order(errors):.2f}."
-    return Claim("(42)", "Beyond the edge x = u / sqrt(1 + m²) + ε f (1 - 1 / sqrt(1 + m²)), y = v.", found,
-                 first_order(errors, 1.8))  # fmt: skip
+    off = f"{errors[-1]:.1e} at ε = 0.005, a power {_order(errors):.2f}"
+    found = f"f = sin y, m = 1.3, put into (33): |x_v| is off 1 by {off}."
+    return Claim(
+        "(42)",
+        "Beyond the edge x = u / sqrt(1 + m²) + ε f (1 - 1 / sqrt(1 + m²)), y = v.",
+        found,
+        first_order(errors, 1.8),
+    )
 
 
-def _edge_drape(epsilon: float, m: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _edge_drape(epsilon: float, m: float) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
     """The edge (41) with f = -y² draped: shear of its cells, their slopes ε f' and whether their rows began beyond it.
 
     A sheet over a metre, upright at its left end as the report has it, its first row half a cell from the corner; the
@@ -259,8 +295,16 @@ def _edge_drape(epsilon: float, m: float) -> tuple[FloatArray, FloatArray, Float
         a = j0 + side * k
         low = min(a, a + side)
         cells.append(shear[i0 : i0 + n - 1, low])
-        corners.append(np.stack([node[i0 : i0 + n - 1, a], node[i0 + 1 : i0 + n, a], node[i0 : i0 + n - 1, a + side],
-                                 node[i0 + 1 : i0 + n, a + side]]))  # fmt: skip
+        corners.append(
+            np.stack(
+                [
+                    node[i0 : i0 + n - 1, a],
+                    node[i0 + 1 : i0 + n, a],
+                    node[i0 : i0 + n - 1, a + side],
+                    node[i0 + 1 : i0 + n, a + side],
+                ]
+            )
+        )
     corner = np.stack(corners, axis=1)  # 4, rows, n - 1, 3
     beyond = (corner[..., 0] > -epsilon * corner[..., 1] ** 2 / 1000 + 1e-6).all(axis=0)
     middle = corner[..., 1].mean(axis=0)
@@ -298,8 +342,13 @@ def _equation_43(runs: Runs, place: str, says: str, *, begun: bool) -> Claim:
         + ", ".join(words)
         + f". Exact turn at y = 0.99, ε = 0.1: {angle(exact, 4)}, (43) {angle(formula, 4)}."
     )
-    return Claim(place, says, found, first_order(errors, 1.5),
-                 ((Verdict.WRONG, "Not in the strip where rows come from the wing: they are turned by their own ψ."),))  # fmt: skip
+    return Claim(
+        place,
+        says,
+        found,
+        first_order(errors, 1.5),
+        ((Verdict.WRONG, "Not in the strip where rows come from the wing: they are turned by their own ψ."),),
+    )
 
 
 def upright_limit(runs: Runs) -> Claim:
@@ -312,8 +361,13 @@ def upright_limit(runs: Runs) -> Claim:
         f"Flat wing, upright spar, ε f' = 0.2: exact {angle(float(exact[0]), 4)}, arcsin is {both[0][0]:.4f}° over it, "
         f"arctan of (20) {number(float(abs(both[1][0])), 4)}°; the difference falls with a power {_order(both[0]):.2f}."
     )
-    return Claim("(43), m → ∞", "sin θ = ε |f'|, as found in section 4.", found, first_order(both[0], 1.8, "deg"),
-                 ((Verdict.FIRST_ORDER, "For a flat wing θ = arctan |f'| is exact, as (20) has it."),))  # fmt: skip
+    return Claim(
+        "(43), m → ∞",
+        "sin θ = ε |f'|, as found in section 4.",
+        found,
+        first_order(both[0], 1.8, "deg"),
+        ((Verdict.FIRST_ORDER, "For a flat wing θ = arctan |f'| is exact, as (20) has it."),),
+    )
 
 
 def _pyramid(sides: int, slant: float) -> Mould:
@@ -340,9 +394,13 @@ def cube_corner(runs: Runs) -> Claim:
         f"Draped with the seed on the vertex, {len(shear)} cells: {angle(float(shear.min()), 6)} to "
         f"{angle(float(shear.max()), 6)}; π/8 is {angle(np.pi / 8, 6)}."
     )
-    return Claim("7.3", "Covering the corner of a cube needs π/8 of shear in each quadrant.", found,
-                 equality(np.degrees(shear - np.pi / 8), ROUND_OFF_DEG, "deg"),
-                 ((Verdict.HOLDS, "Exact for finite spacing too, and three times what locks at 7°."),))  # fmt: skip
+    return Claim(
+        "7.3",
+        "Covering the corner of a cube needs π/8 of shear in each quadrant.",
+        found,
+        equality(np.degrees(shear - np.pi / 8), ROUND_OFF_DEG, "deg"),
+        ((Verdict.HOLDS, "Exact for finite spacing too, and three times what locks at 7°."),),
+    )
 
 
 def any_pyramid(runs: Runs) -> Claim:
@@ -355,8 +413,12 @@ def any_pyramid(runs: Runs) -> Claim:
         off.append(float(np.abs(shear - expected).max()))
         words.append(f"{sides} sides {angle(expected)}")
     found = f"Draped, uniform in every quadrant to {angle(max(off))}: " + ", ".join(words) + "."
-    return Claim("7.3", "Any pyramid can be covered with uniform shear in each quadrant, the origin on its apex.", found,
-                 equality(np.degrees(off), ROUND_OFF_DEG, "deg"))  # fmt: skip
+    return Claim(
+        "7.3",
+        "Any pyramid can be covered with uniform shear in each quadrant, the origin on its apex.",
+        found,
+        equality(np.degrees(off), ROUND_OFF_DEG, "deg"),
+    )
 
 
 CLAIMS = (

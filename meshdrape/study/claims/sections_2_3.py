@@ -36,8 +36,12 @@ def wing_of_section_2(runs: Runs) -> Claim:
         f"A curve through the three slopes turns {angle(turn, 0)} over {length:.2f} m, a mean radius of {radius:.1f} m;"
         f" at the root of the wing used here it is {least:.0f} m."
     )
-    return Claim("2", "A 14 m wing of slopes 15°, 7°, 3° at 0, 4, 14 m has a radius of the order of 65 m.", found,
-                 equality(radius / 65 - 1, 0.1))  # fmt: skip
+    return Claim(
+        "2",
+        "A 14 m wing of slopes 15°, 7°, 3° at 0, 4, 14 m has a radius of the order of 65 m.",
+        found,
+        equality(radius / 65 - 1, 0.1),
+    )
 
 
 def critical_shear(runs: Runs) -> Claim:
@@ -50,8 +54,12 @@ def critical_shear(runs: Runs) -> Claim:
         f"Ribbons keep their pitch p along the crossing ones; the gap p cos θ - w closes at arccos(w/p). To lock at 7° "
         f"they must fill {100 * width / pitch:.2f} % of the pitch; the gap left there is {number(left / pitch, 3)} p."
     )
-    return Claim("fig. 2", "Shear reduces the gaps between ribbons; at the critical angle (about 7°) they touch.", found,
-                 equality([error, left / pitch], 1e-12))  # fmt: skip
+    return Claim(
+        "fig. 2",
+        "Shear reduces the gaps between ribbons; at the critical angle (about 7°) they touch.",
+        found,
+        equality([error, left / pitch], 1e-12),
+    )
 
 
 def origami_fold(runs: Runs) -> Claim:
@@ -66,8 +74,12 @@ def origami_fold(runs: Runs) -> Claim:
         f"Crease off the plane x = z by {number(plane, 0)} m. Largest shear {angle(alone)} on g = 0.3 y² without a "
         f"mesh, {angle(draped.measures.max_shear)} in {draped.measures.n_cells:,} cells draped on the real wing."
     )
-    return Claim("(3)", "If g_w = g_s the crease is plane and a sheet covers both surfaces without any deformation.",
-                 found, equality([worst, plane], ROUND_OFF_DEG, "deg"))  # fmt: skip
+    return Claim(
+        "(3)",
+        "If g_w = g_s the crease is plane and a sheet covers both surfaces without any deformation.",
+        found,
+        equality([worst, plane], ROUND_OFF_DEG, "deg"),
+    )
 
 
 def numerical_method(runs: Runs) -> Claim:
@@ -79,8 +91,12 @@ def numerical_method(runs: Runs) -> Claim:
         f" {checked.max_relative_error:.0e}. Its nodes lie within {1e6 * draped.node_error:.0f} µm of the net that was "
         "found on the unrolled surfaces, without a mesh."
     )
-    return Claim("3.3", "Two start fibres and the weave size determine all nodes, each one spacing from two others.",
-                 found, equality(checked.max_relative_error, 1e-9))  # fmt: skip
+    return Claim(
+        "3.3",
+        "Two start fibres and the weave size determine all nodes, each one spacing from two others.",
+        found,
+        equality(checked.max_relative_error, 1e-9),
+    )
 
 
 def region_1_rows(runs: Runs) -> Claim:
@@ -99,8 +115,12 @@ def region_1_rows(runs: Runs) -> Claim:
         f"In {fed.sum():,} draped cells fed by the left ribbon, γ = 0, cross-wise ribbons lean by at most "
         f"{number(vertical, 4)}°; rows differ in shape by at most {number(float(change), 4)} of a spacing a link."
     )
-    return Claim("3.4", "In region I the cross-wise ribbons are vertical and all rows have one shape, shifted down.",
-                 found, equality([vertical, float(np.degrees(change))], 0.01, "deg"))  # fmt: skip
+    return Claim(
+        "3.4",
+        "In region I the cross-wise ribbons are vertical and all rows have one shape, shifted down.",
+        found,
+        equality([vertical, float(np.degrees(change))], 0.01, "deg"),
+    )
 
 
 def region_1_spacing(runs: Runs) -> Claim:
@@ -116,8 +136,12 @@ def region_1_spacing(runs: Runs) -> Claim:
         f"Distance of the columns in region I falls from {columns[0]:.3f} to {columns[-1]:.3f} spacings; along the "
         f"crease, at the top of the spar, it grows from {top[0]:.3f} to {top[-1]:.3f}."
     )
-    return Claim("3.4", "Cross-wise ribbons lie closer together to the right in region I, and farther apart at the top.",
-                 found, equality(apart, 1e-9))  # fmt: skip
+    return Claim(
+        "3.4",
+        "Cross-wise ribbons lie closer together to the right in region I, and farther apart at the top.",
+        found,
+        equality(apart, 1e-9),
+    )
 
 
 def region_2_determined(runs: Runs) -> Claim:
@@ -132,8 +156,12 @@ def region_2_determined(runs: Runs) -> Claim:
         f"Left ribbon at γ = 0 and at γ = {angle(turned)}, both draped: shear of {same:,} of {both.sum():,} cells fed "
         f"by the wing is the same to the last bit, the largest change {angle(change)}."
     )
-    return Claim("3.4", "The solution in region II is completely determined by the sheet on the wing.", found,
-                 equality(np.degrees(change), 0.0, "deg"))  # fmt: skip
+    return Claim(
+        "3.4",
+        "The solution in region II is completely determined by the sheet on the wing.",
+        found,
+        equality(np.degrees(change), 0.0, "deg"),
+    )
 
 
 def left_shear_helps(runs: Runs) -> Claim:
@@ -147,9 +175,13 @@ def left_shear_helps(runs: Runs) -> Claim:
         f"Left ribbon turned by {angle(turned)}: largest shear in region I goes from {angle(one[0])} to "
         f"{angle(one[1])}, in region II from {angle(two[0])} to {angle(two[1])}."
     )
-    return Claim("3.4", "A small shear at the left end reduces the maximum shear in region II.", found,
-                 named_region(missing[0], missing[1], 1e-9),
-                 ((Verdict.SWAPPED, "True of region I; nothing done at the spar's left end can change region II."),))  # fmt: skip
+    return Claim(
+        "3.4",
+        "A small shear at the left end reduces the maximum shear in region II.",
+        found,
+        named_region(missing[0], missing[1], 1e-9),
+        ((Verdict.SWAPPED, "True of region I; nothing done at the spar's left end can change region II."),),
+    )
 
 
 def returning(runs: Runs) -> Claim:
@@ -170,8 +202,12 @@ def returning(runs: Runs) -> Claim:
     )
     # links that fit would contradict it, and so would rows that come back where the crease does not fall
     contradiction = 0.0 if off.max() > 1e-3 and need > 1e-3 and not returning_rows(gentle) else 1.0
-    return Claim("3.4", "A row that goes over the edge and comes back is ill-posed: the wing would have to shear.", found,
-                 equality(contradiction, 0.0))  # fmt: skip
+    return Claim(
+        "3.4",
+        "A row that goes over the edge and comes back is ill-posed: the wing would have to shear.",
+        found,
+        equality(contradiction, 0.0),
+    )
 
 
 def continuum(runs: Runs) -> Claim:
@@ -185,13 +221,18 @@ def continuum(runs: Runs) -> Claim:
     )
     order = [float(np.polyfit(np.log(spacing), np.log(np.abs(short)), 1)[0]) for short in (ribbon, wing)]
     found = (
-        f"Figure 4 at spacings of 20 to 2.5 mm: the largest shear tends to its limit with a power {order[0]:.2f} of the "
+        "Figure 4 at spacings of 20 to 2.5 mm: the largest shear tends to its limit with a power "
+        f"{order[0]:.2f} of the "
         f"spacing where the left ribbon feeds the rows, {order[1]:.2f} where the wing does, whose first row leaves the "
         f"edge tangentially; at 2.5 mm it is still {angle(float(wing[-1]))} short."
     )
-    return Claim("3.2", "The weave is so fine that a continuum may be used (an error of first order in the spacing).",
-                 found, conditional(min(order[0] - 0.7, 0.0), min(order[1] - 0.7, 0.0), 0.0),
-                 ((Verdict.CONDITIONAL, "Only where the left ribbon feeds the rows; else an error like the root."),))  # fmt: skip
+    return Claim(
+        "3.2",
+        "The weave is so fine that a continuum may be used (an error of first order in the spacing).",
+        found,
+        conditional(min(order[0] - 0.7, 0.0), min(order[1] - 0.7, 0.0), 0.0),
+        ((Verdict.CONDITIONAL, "Only where the left ribbon feeds the rows; else an error like the root."),),
+    )
 
 
 CLAIMS = (

@@ -18,8 +18,8 @@ from meshdrape.theory import (
     gap,
     linear_deviation,
     slope_criterion,
-    wing_fed_bound,
     width_for,
+    wing_fed_bound,
     within_reach,
 )
 
@@ -198,9 +198,17 @@ def sheet_view(draped: DrapedFold) -> SheetView:
         )
     along = [np.stack([z.real, z.imag], axis=-1) for z in (edges[0](fine), edges[1](fine))]
     return SheetView(
-        wing, spar, along[0], along[1], crossings[0], crossings[1], draped.reference.region, draped.shear,
-        sheet.gamma, sheet.height,
-    )  # fmt: skip
+        wing,
+        spar,
+        along[0],
+        along[1],
+        crossings[0],
+        crossings[1],
+        draped.reference.region,
+        draped.shear,
+        sheet.gamma,
+        sheet.height,
+    )
 
 
 def _profiles(runs: Runs) -> ProfileView:
@@ -243,13 +251,13 @@ def _criteria(runs: Runs, k: int) -> CriteriaView:
         fold = family.fold(float(c))
         one = drape_fold(fold, 0.05, HEIGHT, 7e-3, within_reach(fold, HEIGHT).gamma_best)
         draped.append((float(c), max(one.max_shear(WING_FED), one.max_shear(RIBBON_FED))))
-    return CriteriaView(family.name, amplitude, *(np.array(values) for values in (slope, spread, upright, best)),
-                        np.array(draped))  # fmt: skip
+    found = [np.array(values) for values in (slope, spread, upright, best)]
+    return CriteriaView(family.name, amplitude, found[0], found[1], found[2], found[3], np.array(draped))
 
 
 def _convergence(runs: Runs) -> ConvergenceView:
     limit = within_reach(runs.figure_4, 0.6)
-    spacing = 0.08 / 2.0 ** np.arange(5 if runs.quick else 7)
+    spacing: FloatArray = np.array([0.08 * 0.5**k for k in range(5 if runs.quick else 7)])
     nets = [characteristic_net(runs.figure_4, float(h), 0.6) for h in spacing]
     ribbon, wing = (
         region.shear - np.array([net.max_shear(k).shear for net in nets])
