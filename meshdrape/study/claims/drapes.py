@@ -47,8 +47,8 @@ def fold_mould(fold: Fold, chord: float, height: float, facet: float, before: fl
 
     The first facet begins `before` of its width ahead of y = 0: by a half it is tangent to the crease there.
     """
-    y = (np.arange(int(np.ceil(fold.span / facet)) + 2) - before) * facet
-    crease = MM * np.stack([_curving_on(fold.spar, y), y, _curving_on(fold.wing, y)], axis=1)
+    y = np.asarray((np.arange(int(np.ceil(fold.span / facet)) + 2) - before) * facet, dtype=np.float64)
+    crease: FloatArray = MM * np.stack([_curving_on(fold.spar, y), y, _curving_on(fold.wing, y)], axis=1)
     wing = np.stack([MM * chord - crease[:, 0], 0 * y, 0 * y], axis=1)
     return ruled_mould(crease, wing, np.array([0.0, 0.0, -MM * height]))
 

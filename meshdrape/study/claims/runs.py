@@ -69,6 +69,11 @@ class Runs:
         return 0.05 if self.quick else 0.02
 
     @property
+    def families(self) -> tuple[tuple[int, Family], ...]:
+        """The `FAMILIES` to look at, with their numbers: quick, one of each kind."""
+        return tuple((k, family) for k, family in enumerate(FAMILIES) if not self.quick or k in (0, 1, 3))
+
+    @property
     def facet(self) -> float:
         """Width of the facets of the real wing, m."""
         return 7e-3 if self.quick else 3.5e-3

@@ -236,7 +236,7 @@ def equation_20_best(runs: Runs) -> Claim:
 
 def _slope_criterion(runs: Runs, place: str, *, upright: bool) -> Claim:
     estimate, true, words = [], [], []
-    for k, family in enumerate(FAMILIES):
+    for k, family in runs.families:
         fold, height = runs.real(k), HEIGHT
         gamma = 0.0 if upright else within_reach(fold, height).gamma_best
         draped = runs.draped_real(k, gamma)
@@ -256,13 +256,14 @@ def _slope_criterion(runs: Runs, place: str, *, upright: bool) -> Claim:
 
 def shear_of_the_wing(runs: Runs) -> Claim:
     """The end of section 4: extra shear on the wing cover."""
-    drapes = [runs.draped_real(k) for k in range(len(FAMILIES))]
+    drapes = [runs.draped_real(k) for k, _ in runs.families]
     on_wing = max(float(np.abs(one.on_wing).max()) for one in drapes)
     astride = max(float(np.abs(one.astride).max()) for one in drapes)
     most = max(max(one.max_shear(k) for k in (RIBBON_FED, WING_FED)) for one in drapes)
     count = sum(len(one.on_wing) for one in drapes)
     found = (
-        f"Sheet laid undeformed on the wing, five drapes: at most {angle(on_wing)} in {count:,} cells of the wing, up "
+        f"Sheet laid undeformed on the wing, {len(drapes)} drapes: at most {angle(on_wing)} in {count:,} cells of the "
+        "wing, up "
         f"to {angle(astride)} in cells that straddle the edge, {angle(most)} on the spar."
     )
     return Claim(

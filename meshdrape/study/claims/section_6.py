@@ -15,7 +15,7 @@ from meshdrape.study.claims.judgement import (
     optimum,
     printed,
 )
-from meshdrape.study.claims.runs import FAMILIES, HEIGHT, LOCKING, Runs
+from meshdrape.study.claims.runs import HEIGHT, LOCKING, Runs
 from meshdrape.theory import (
     RIBBON_FED,
     WING_FED,
@@ -157,7 +157,7 @@ def ribbon_fed_maximum(runs: Runs) -> Claim:
 
 def _region_maximum(runs: Runs, place: str, region: int, says: str) -> Claim:
     estimate, true, words = [], [], []
-    for k, family in enumerate(FAMILIES):
+    for k, family in runs.families:
         fold = runs.real(k)
         estimate.append(wing_fed_bound(fold) if region == WING_FED else ribbon_fed_bound(fold, 0.0))
         true.append(runs.draped_real(k).max_shear(region))
@@ -170,7 +170,7 @@ def _region_maximum(runs: Runs, place: str, region: int, says: str) -> Claim:
 def sharper_maximum(runs: Runs) -> Claim:
     """What takes the place of (29) and (30): the pairs that meet."""
     off, finest, words = [], [], []
-    for k, family in enumerate(FAMILIES):
+    for k, family in runs.families:
         fold = runs.real(k)
         reach, draped = within_reach(fold, HEIGHT), runs.draped_real(k)
         foretold = reach.wing_fed.shear, reach.ribbon_fed.shear
@@ -218,7 +218,7 @@ def region_names(runs: Runs) -> Claim:
 def best_gamma(runs: Runs) -> Claim:
     """(31): the middle of all ψ."""
     estimate, best, words = [], [], []
-    for k, family in enumerate(FAMILIES):
+    for k, family in runs.families:
         fold = runs.real(k)
         middle, _ = middle_gamma(fold)
         reach = within_reach(fold, HEIGHT)
@@ -242,7 +242,7 @@ def best_gamma(runs: Runs) -> Claim:
 def effective_constraint(runs: Runs) -> Claim:
     """Whether (29) is the constraint that counts, for any gamma within the range of ψ."""
     excess, words = [], []
-    for k, family in enumerate(FAMILIES):
+    for k, family in runs.families:
         fold = runs.real(k)
         least, greatest = psi_range(fold)
         for part in (0.0, 0.25, 0.5, 0.75, 1.0):
@@ -268,7 +268,7 @@ def condition_32(runs: Runs) -> Claim:
     """(32) over many designs."""
     passed_but_fails = refused_but_works = designs = 0
     amplitudes = np.linspace(0.4, 2.4, 4 if runs.quick else 9)
-    for family in FAMILIES:
+    for _, family in runs.families:
         for part in amplitudes:
             fold = family.fold(float(part * family.amplitudes[0]))
             reach = within_reach(fold, HEIGHT)

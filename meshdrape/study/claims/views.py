@@ -237,7 +237,7 @@ def _turn() -> TurnView:
 
 def _criteria(runs: Runs, k: int) -> CriteriaView:
     family = FAMILIES[k]
-    amplitude = np.linspace(0.0, 1.25, 7 if runs.quick else 16) * family.amplitudes[1]
+    amplitude = np.linspace(0.0, 1.25, 5 if runs.quick else 16) * family.amplitudes[1]
     slope, spread, upright, best = [], [], [], []
     for c in amplitude:
         fold = family.fold(float(c))
@@ -247,7 +247,7 @@ def _criteria(runs: Runs, k: int) -> CriteriaView:
         upright.append(max(reach.wing_fed.shear, reach.ribbon_fed.shear))
         best.append(max(reach.wing_fed.shear, reach.ribbon_fed_best))
     draped = []
-    for c in amplitude[[2, -1] if runs.quick else [3, 6, 9, 12]]:
+    for c in amplitude[[3] if runs.quick else [3, 6, 9, 12]]:
         fold = family.fold(float(c))
         one = drape_fold(fold, 0.05, HEIGHT, 7e-3, within_reach(fold, HEIGHT).gamma_best)
         draped.append((float(c), max(one.max_shear(WING_FED), one.max_shear(RIBBON_FED))))
@@ -257,7 +257,7 @@ def _criteria(runs: Runs, k: int) -> CriteriaView:
 
 def _convergence(runs: Runs) -> ConvergenceView:
     limit = within_reach(runs.figure_4, 0.6)
-    spacing: FloatArray = np.array([0.08 * 0.5**k for k in range(5 if runs.quick else 7)])
+    spacing: FloatArray = np.array([0.08 * 0.5**k for k in range(4 if runs.quick else 7)])
     nets = [characteristic_net(runs.figure_4, float(h), 0.6) for h in spacing]
     ribbon, wing = (
         region.shear - np.array([net.max_shear(k).shear for net in nets])
@@ -266,7 +266,7 @@ def _convergence(runs: Runs) -> ConvergenceView:
     tail = slice(2, None)
     orders = [float(np.polyfit(np.log(spacing[tail]), np.log(short[tail]), 1)[0]) for short in (ribbon, wing)]
     draped = []
-    for h in spacing[: 2 if runs.quick else 4]:
+    for h in spacing[: 1 if runs.quick else 4]:
         one = drape_fold(runs.figure_4, float(h), 0.6, 5e-4)
         draped.append(
             (
