@@ -21,6 +21,7 @@ COMMANDS = {
     "inspect": "list the faces of a mould and check its mesh",
     "fold": "say how far a spar may leave the origami fold, and what to change",
     "mould": "make a mould by one of the scripts that come with meshdrape",
+    "validate": "recompute the study group report: every claim, its error and a verdict",
 }
 
 
