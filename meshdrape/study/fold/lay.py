@@ -94,7 +94,17 @@ def lay(cloth: Cloth, mould: FoldMould, gamma: float, locking_angle: float, thre
     """
     fabric = Fabric(cloth.spacing, locking_angle=locking_angle)
     turn = mould.psi_at_start() - gamma
-    net = drape(mould.mould, fabric, cloth.seed, cloth.direction, extent=cloth.extent, weft_turn=turn, threads=threads)
+    # rows that come back over the edge are told of by name; the net goes on, for all of it to be measured
+    net = drape(
+        mould.mould,
+        fabric,
+        cloth.seed,
+        cloth.direction,
+        extent=cloth.extent,
+        weft_turn=turn,
+        recrossing=True,
+        threads=threads,
+    )
     return read(cloth, mould, gamma, net)
 
 
