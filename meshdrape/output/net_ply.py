@@ -311,7 +311,7 @@ def _provenance(net: Net, path: str | os.PathLike[str]) -> dict[str, Any]:
         "seed": np.asarray(net.seed).tolist(),
         "direction": np.asarray(net.direction).tolist(),
         **_prescribed(net),
-        "generator_nodes": net.start.n_nodes.tolist(),
+        "generator_nodes": net.generator_nodes,
         "collar_depth": net.collar_depth,
         "seed_index": [int(index) for index in net.seed_index],
         "nodes": list(net.node_status.shape),

@@ -31,13 +31,6 @@ def crease_edges(
     angle_tolerance : float, optional
         Of the tessellation, rad.
     """
-    kept: dict[float | None, NDArray[np.bool_]] = vars(surface).setdefault("_crease_edges", {})
-    if angle_tolerance not in kept:
-        kept[angle_tolerance] = _crease_edges(surface, cad_face, angle_tolerance)
-    return kept[angle_tolerance]
-
-
-def _crease_edges(surface: Surface, cad_face: NDArray[np.int64], angle_tolerance: float | None) -> NDArray[np.bool_]:
     angle = _edge_angle(surface)
     other = cad_face[surface.face_neighbour // 3]
     least = np.where(cad_face[:, None] != other, max(CAD_CREASE_ANGLE, 2.0 * (angle_tolerance or 0.0)), CREASE_ANGLE)

@@ -19,7 +19,7 @@ from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net
 from meshdrape.weave.prescribed import prescribe, tracks_on, turns_on
-from meshdrape.weave.recross import end_where_recrossed
+from meshdrape.weave.recross import Creases, end_where_recrossed
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -181,8 +181,11 @@ def drape(
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
     if not recrossing:
-        crease = crease_edges(part, mould.triangle_face[part_face], mould.angle_tolerance)
-        end_where_recrossed(part, crease, surface, fabric, lattice, start, threads)
+        if "_creases" not in vars(part):
+            edges = crease_edges(part, mould.triangle_face[part_face], mould.angle_tolerance)
+            # kept with the surface, as its collar is, for the next drape
+            vars(part)["_creases"] = Creases(part, edges)
+        end_where_recrossed(vars(part)["_creases"], surface, fabric, lattice, start, threads)
     trim(surface, fabric, lattice, start, threads)
     frame = surface.unfolding.frame[start.face[0]]
     return Net(

@@ -83,6 +83,11 @@ class Net:
         return int(self.start.origin[0]), int(self.start.origin[1])
 
     @property
+    def generator_nodes(self) -> list[int]:
+        """Nodes on +warp, +weft, -warp, -weft."""
+        return [int(n) for n in self.start.n_nodes]
+
+    @property
     def node_status(self) -> NDArray[np.uint8]:
         """NodeStatus of each node, (n_warp, n_weft) uint8."""
         return self.lattice.status

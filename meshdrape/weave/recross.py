@@ -34,8 +34,7 @@ MOST_LOOKED_AT = 40
 
 
 def end_where_recrossed(
-    part: Surface,
-    crease: NDArray[np.bool_],
+    creases: Creases,
     surface: Surface,
     fabric: Fabric,
     lattice: Lattice,
@@ -49,18 +48,15 @@ def end_where_recrossed(
 
     Parameters
     ----------
-    part : Surface
-        The mould, without its collar.
-    crease : (m, 3) bool
-        Its creases, by face and edge.
+    creases : Creases
+        Of the mould, without its collar.
     surface : Surface
         With the collar.
     """
-    creases: Creases = vars(part).setdefault("_creases", Creases(part, crease))
     if not creases.returns.any():
         return 0
     region = np.full(len(surface.faces), -1, dtype=np.int64)
-    region[: len(part.faces)] = creases.region
+    region[: len(creases.region)] = creases.region
     i0, j0 = (int(v) for v in start.origin)
     n_warp, n_weft = lattice.status.shape
     tables = (lattice.face, lattice.status, region, creases.returns)
@@ -80,7 +76,7 @@ def end_where_recrossed(
                 along = np.unique(np.linspace(entered, back - sense, MOST_LOOKED_AT).astype(np.int64))
                 across = np.full(len(along), line)
                 i, j = (along, across) if warp else (across, along)
-                if _depth(part, creases, surface, lattice, i, j) > beyond:
+                if _depth(creases, surface, lattice, i, j) > beyond:
                     nodes.append((back, line) if warp else (line, back))
     for node in nodes:
         _cut_behind(lattice, (i0, j0), node)
@@ -91,7 +87,14 @@ def end_where_recrossed(
 
 @dataclass(frozen=True, eq=False)
 class Creases:
-    """The smooth regions of a mould, and which of them meet in one open crease."""
+    """The smooth regions of a mould, and which of them meet in one open crease.
+
+    Attributes
+    ----------
+    surface : Surface
+    crease : (m, 3) bool
+        Its creases, by face and edge.
+    """
 
     surface: Surface
     crease: NDArray[np.bool_]
@@ -154,15 +157,15 @@ class Creases:
         return bool((np.linalg.norm(total[inner], axis=1) <= 2 * np.sin(CORNER / 2)).all())
 
 
-def _depth(part: Surface, creases: Creases, surface: Surface, lattice: Lattice, i: IntArray, j: IntArray) -> float:
+def _depth(creases: Creases, surface: Surface, lattice: Lattice, i: IntArray, j: IntArray) -> float:
     """How far the nodes (i, j) go from the creases of their mould, mm."""
     ends, _ = creases.edges
     face = lattice.face[i, j]
     frame = surface.unfolding.frame[face]
     points = frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
     points = points[lattice.status[i, j] == NodeStatus.PLACED]
-    tail = part.vertices[ends[:, 0]]
-    along = part.vertices[ends[:, 1]] - tail
+    tail = creases.surface.vertices[ends[:, 0]]
+    along = creases.surface.vertices[ends[:, 1]] - tail
     farthest = 0.0
     for point in points:
         t = np.clip(np.einsum("ij,ij->i", point - tail, along) / np.einsum("ij,ij->i", along, along), 0.0, 1.0)

@@ -170,16 +170,26 @@ class NodeSearch:
     def _gradients(self, patch: Patch, place: Place, sources: list[int], step: float) -> FloatArray | None:
         """Gradients (n, 2) at a place of distances from vertices of a patch, by differences over a step in spacings."""
         step *= float(self.length.min())
-        trial = patch.copy()
         around = [step_from(self.surface, place, move) for move in step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])]
-        ends = [None if near is None else insert(trial, self.surface, near) for near in around]
-        targets = [end for end in ends if end is not None]
-        if len(targets) < len(ends):
+        places = [near for near in around if near is not None]
+        if len(places) < len(around):
             return None
-        found = np.array([exact_distances(trial, source, targets) for source in sources])
+        # all in one patch is quick; where they leave triangles too flat for libigl, each gets a patch of its own
+        found = self._distances_from(patch, sources, places)
+        if not np.isfinite(found).all():
+            found = np.concatenate([self._distances_from(patch, sources, [near]) for near in places], axis=1)
         if not np.isfinite(found).all():
             return None
         return np.asarray(np.stack([found[:, 0] - found[:, 1], found[:, 2] - found[:, 3]], axis=1) / (2 * step))
+
+    def _distances_from(self, patch: Patch, sources: list[int], places: list[Place]) -> FloatArray:
+        """Distances (n_sources, n_places) from vertices of a patch; infinite where libigl or the patch cannot tell."""
+        trial = patch.copy()
+        ends = [insert(trial, self.surface, place) for place in places]
+        targets = [end for end in ends if end is not None]
+        if len(targets) < len(ends):
+            return np.full((len(sources), len(places)), np.inf)
+        return np.array([exact_distances(trial, source, targets) for source in sources])
 
     def _edge(self, k: int, place: Place) -> Edge | None:
         """The edge from a parent, A or B, to the node: straight where a straight path gets there, else bent."""

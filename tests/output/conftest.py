@@ -46,6 +46,8 @@ class KnownNet:
     node_position: NDArray[np.float64]
     node_status: NDArray[np.uint8]
     start_fibres: StartFibres = DRAWN
+    generator_nodes: list[int] = field(default_factory=lambda: [3, 2, 1, 0])
+    collar_depth: float = 12.5
     warp_direction: NDArray[np.float64] = field(init=False)
     weft_direction: NDArray[np.float64] = field(init=False)
 

@@ -44,6 +44,8 @@ def test_the_round_trip_is_exact(written):
     assert stored.seed.tobytes() == net.seed.tobytes()
     assert stored.direction.tobytes() == net.direction.tobytes()
     assert stored.seed_index == net.seed_index
+    assert stored.generator_nodes == net.generator_nodes
+    assert stored.collar_depth == net.collar_depth
     assert stored.start_fibres.turns == net.start_fibres.turns
     assert stored.start_fibres.warp_path is None
     assert np.array_equal(stored.start_fibres.weft_path, net.start_fibres.weft_path)
