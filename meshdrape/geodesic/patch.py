@@ -256,7 +256,8 @@ def _kept_piece(u: FloatArray, v: FloatArray, centre: FloatArray, radius: float)
     along = v - u
     length = float(np.linalg.norm(along))
     middle = float((centre - u) @ along) / length
-    off2 = float((centre - u) @ (centre - u)) - middle * middle
+    off = centre - u - (middle / length) * along
+    off2 = float(off @ off)
     if off2 >= radius * radius:
         return None
     half = max(float(np.sqrt(radius * radius - off2)), 0.3 * radius)
