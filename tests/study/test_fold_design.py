@@ -29,16 +29,18 @@ def in_unit(unit):
     k = 1000 / UNITS[unit]
     sizes = {name: REAL[name] * k for name in ("span", "chord", "spar_height", "spacing")}
     y = [k * at for at in Y]
+    wave = {"wavelength": 3.5 * k}
+    real, curved = {"profile": "real"}, {"profile": "table", "y": y, "g": [0.0, 0.2 * k, 0.4 * k, 0.5 * k]}
     return sizes, [
-        {"wing": {"profile": "quadratic", "a": 0.01 / k}, "spar": {"deviation": "sine", "c": 0.05 * k, "wavelength": 3.5 * k}},
+        {"wing": {"profile": "quadratic", "a": 0.01 / k}, "spar": {"deviation": "sine", "c": 0.05 * k, **wave}},
         {"wing": {"profile": "arc", "radius": 90 * k}, "spar": {"deviation": "bump", "c": 0.05 * k, "length": 4 * k}},
-        {"wing": {"profile": "table", "y": y, "g": [0.0, 0.2 * k, 0.4 * k, 0.5 * k]}, "spar": {"deviation": "linear", "c": 0.1}},
-        {"wing": {"profile": "real"}, "spar": {"deviation": "table", "y": y, "f": [0.0, 0.01 * k, 0.02 * k, 0.05 * k]}},
-        {"wing": {"profile": "real"}, "spar": {"deviation": "ripple", "c": 0.01 * k, "wavelength": 3.5 * k}},
-        {"wing": {"profile": "real"}, "spar": {"profile": "arc", "radius": 60 * k}},
-        {"wing": {"profile": "real"}, "spar": {"deviation": "sin2_slope", "c": 0.1}},
+        {"wing": curved, "spar": {"deviation": "linear", "c": 0.1}},
+        {"wing": real, "spar": {"deviation": "table", "y": y, "f": [0.0, 0.01 * k, 0.02 * k, 0.05 * k]}},
+        {"wing": real, "spar": {"deviation": "ripple", "c": 0.01 * k, **wave}},
+        {"wing": real, "spar": {"profile": "arc", "radius": 60 * k}},
+        {"wing": real, "spar": {"deviation": "sin2_slope", "c": 0.1}},
         {"wing": {"profile": "flat"}, "spar": {"deviation": "parabola", "c": 0.1}},
-    ]  # fmt: skip
+    ]
 
 
 @pytest.mark.parametrize("unit", [unit for unit in UNITS if unit != "m"])
@@ -91,7 +93,7 @@ BAD = {
     "table too short": ({"wing": {"profile": "table", "y": [0.0, 1.0, 2.0, 3.0], "g": [0.0, 0.1, 0.2, 0.3]}}, "cover"),
     "table of three": ({"wing": {"profile": "table", "y": [0.0, 7.0, 14.0], "g": [0.0, 0.1, 0.2]}}, "at least 4"),
     "table uneven": ({"wing": {"profile": "table", "y": Y, "g": [0.0, 0.1, 0.2]}}, "two equal lists"),
-    "word in a table": ({"wing": {"profile": "table", "y": Y, "g": [0.0, 0.1, "b", 0.3]}}, "g[2] = 'b' is not a number"),
+    "word in a table": ({"wing": {"profile": "table", "y": Y, "g": [0.0, 0.1, "b", 0.3]}}, "g[2] = 'b' is not a"),
     "number for a table": ({"wing": {"profile": "table", "y": 3.0, "g": 1.0}}, "must be a list"),
     "list for a number": ({"spar": {"deviation": "linear", "c": [0.1, 0.2]}}, "must be a number, not a list"),
     "arc too small": ({"wing": {"profile": "arc", "radius": 10.0}}, "radius"),
@@ -108,7 +110,7 @@ def test_bad_designs(name):
     bad = {key: value for key, value in table(**changes).items() if value is not None}
     with pytest.raises(DesignError) as error:
         design_from(bad)
-    assert says in str(error.value).replace("mm: 14", "mm")
+    assert says in str(error.value)
     assert "\n" not in str(error.value)
 
 

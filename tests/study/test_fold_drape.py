@@ -54,9 +54,7 @@ def test_every_cell_agrees_with_the_discrete_net(changes):
     assert tagged.sum() > 0.98 * ((net.region > 0) & net.within).sum() > 0
     _, turn = facet_bounds(frame, np.radians(0.015), 2500)
     assert np.degrees(np.abs(net.shear - drape.shear)[tagged].max()) < np.degrees(turn) + 0.002
-    assert in_degrees(drape) == pytest.approx(
-        np.degrees([net.max_shear(2).shear, net.max_shear(1).shear]), abs=0.02
-    )
+    assert in_degrees(drape) == pytest.approx(np.degrees([net.max_shear(2).shear, net.max_shear(1).shear]), abs=0.02)
 
 
 @pytest.mark.parametrize("base", [None, FIGURE_4])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshdrape.study.fold.answer import FoldWarning, Verdict
 from meshdrape.study.fold.design import Design
@@ -38,7 +39,7 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
                 f"{math.degrees(back.turn):.2f} deg: ill-posed, the sheet cannot lie undeformed on the {frame.first}; "
                 "begin at the other end or lay the other side first",
             )
-    for start, end in grazing_rows(fold, GRAZING):
+    for start, end in _joined(grazing_rows(fold, GRAZING)):
         turn = np.ptp(fold.psi(np.linspace(start, end, 65)))
         if end - start > design.spacing and turn > 1e-3 * GRAZING:
             stretch(
@@ -49,7 +50,7 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
                 "lies",
             )
     scales = separation_of_scales(fold, design.spacing, COARSE)
-    for start, end in scales.coarse:
+    for start, end in _joined(scales.coarse):
         stretch(
             "coarse",
             start,
@@ -73,3 +74,14 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
             )
         )
     return tuple(found)
+
+
+def _joined(stretches: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Stretches in order, those that overlap made one."""
+    joined: list[tuple[float, float]] = []
+    for start, end in stretches.tolist():
+        if joined and start <= joined[-1][1]:
+            joined[-1] = joined[-1][0], max(end, joined[-1][1])
+        else:
+            joined.append((start, end))
+    return joined
