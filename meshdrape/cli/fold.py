@@ -15,14 +15,19 @@ from meshdrape.errors import FileError
 if TYPE_CHECKING:
     from meshdrape.study.fold import FoldAnswer
 
-SUFFIXES = (".json",)
+SUFFIXES = (".html", ".json")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("design", metavar="DESIGN.toml", help="wing, spar, fabric and start; see samples/designs")
     parser.add_argument(
-        "-o", "--output", action="append", default=[], metavar="FILE", help="write the answer: .json; repeatable"
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="the answer as a page with pictures, .html, or .json; repeatable",
     )
     parser.add_argument(
         "--nearest", choices=("slope", "position"), default="slope", help="what the nearest spar is nearest in (slope)"
@@ -87,6 +92,11 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
 
 def _write(answer: FoldAnswer, target: Path) -> None:
+    if target.suffix.lower() == ".html":
+        from meshdrape.output.fold_page import write_fold_page
+
+        write_fold_page(answer, target)
+        return
     from meshdrape.output import write_json
     from meshdrape.study.fold import facts
 

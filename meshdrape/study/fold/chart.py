@@ -32,7 +32,7 @@ _STEEPNESS = {
 # The chart's drapes have no more columns than this: it asks where the border is, not for the last hundredth.
 MOST_COLUMNS = 280
 # For the same reason: turn of the crease from facet to facet, rad, and the most facets.
-TURN, FACETS = math.radians(0.05), 1200
+TURN, FACETS = math.radians(0.06), 800
 # Steepest slope of the family's first and last member, in tangents of the locking angle. Where f' changes sign the
 # cloth sees its range: the limit lies near one half.
 GENTLEST, STEEPEST = 0.2, 1.4

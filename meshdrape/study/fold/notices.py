@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshdrape.study.fold.answer import FoldWarning, Verdict
 from meshdrape.study.fold.design import Design
@@ -23,40 +24,41 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
     frame = drape.cloth.frame
     fold, found = frame.fold, []
 
-    def stretch(kind: str, start: float, end: float, text: str) -> None:
-        a, b = sorted((frame.station(float(start)), frame.station(float(end))))
-        found.append(FoldWarning(kind, f"y = {a:,.0f} to {b:,.0f} mm: {text}", a, b))
+    def places(kind: str, stretches: list[tuple[float, float]], text: str) -> None:
+        """One warning for all stretches of a kind, in the design's coordinates."""
+        if not stretches:
+            return
+        ends = sorted(sorted((frame.station(a), frame.station(b))) for a, b in stretches)
+        where = ", ".join(f"{a:,.0f} to {b:,.0f}" for a, b in ends)
+        found.append(FoldWarning(kind, f"y = {where} mm: {text}", ends[0][0], ends[-1][1]))
 
     second = "wing" if frame.first == "spar" else "spar"
     for back in returning_rows(fold, drape.gamma):
         if back.turn > 1e-6:
-            stretch(
+            places(
                 "returning",
-                back.start,
-                back.end,
+                [(back.start, back.end)],
                 f"ribbons that left the {frame.first} come back to it from the {second}, turned by up to "
                 f"{math.degrees(back.turn):.2f} deg: ill-posed, the sheet cannot lie undeformed on the {frame.first}; "
                 "begin at the other end or lay the other side first",
             )
-    for start, end in grazing_rows(fold, GRAZING):
-        turn = np.ptp(fold.psi(np.linspace(start, end, 65)))
-        if end - start > design.spacing and turn > 1e-3 * GRAZING:
-            stretch(
-                "grazing",
-                start,
-                end,
-                "rows run within 1 deg of the edge: where one crosses hangs on the spacing and on where the first row "
-                "lies",
-            )
+    places(
+        "grazing",
+        [
+            (start, end)
+            for start, end in _joined(grazing_rows(fold, GRAZING))
+            if end - start > design.spacing and np.ptp(fold.psi(np.linspace(start, end, 65))) > 1e-3 * GRAZING
+        ],
+        "rows run within 1 deg of the edge: where one crosses hangs on the spacing and on where the first row lies",
+    )
     scales = separation_of_scales(fold, design.spacing, COARSE)
-    for start, end in scales.coarse:
-        stretch(
-            "coarse",
-            start,
-            end,
-            f"psi changes by up to {math.degrees(scales.turn_change):.2f} deg from one ribbon to the next, more than "
-            f"0.5 deg: a spacing of {design.spacing:g} mm is too coarse for condition (24) and the criteria",
-        )
+    places(
+        "coarse",
+        _joined(scales.coarse),
+        f"psi changes by more than 0.5 deg from one ribbon to the next, by {math.degrees(scales.turn_change):.2f} deg "
+        f"at y = {frame.station(scales.y):,.0f} mm: a spacing of {design.spacing:g} mm is too coarse for condition "
+        "(24), and the criteria are out by as much",
+    )
     if (verdict.criteria["characteristics"].largest <= design.locking_angle) != verdict.feasible:
         found.append(
             FoldWarning("verdict", "too close to call: drape and characteristic construction decide differently")
@@ -73,3 +75,14 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
             )
         )
     return tuple(found)
+
+
+def _joined(stretches: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Stretches in order, those that overlap made one."""
+    joined: list[tuple[float, float]] = []
+    for start, end in stretches.tolist():
+        if joined and start <= joined[-1][1]:
+            joined[-1] = joined[-1][0], max(end, joined[-1][1])
+        else:
+            joined.append((start, end))
+    return joined
