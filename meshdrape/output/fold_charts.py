@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -38,7 +39,7 @@ RULES: Final = {"gamma 0": "upright, γ = 0", "free": "straight on", "best": "be
 def draw_along(where: Where, locking: float) -> bytes:
     """ψ and the shear of both regions along the crease, with the pair of stations that sets each maximum."""
     with styled():
-        figure = new_figure(_WIDTH, 3.7)
+        figure = new_figure(_WIDTH, 3.8)
         turn, shear = figure.subplots(2, 1, sharex=True)
         y = where.y / METRE
         turn.plot(y, np.degrees(where.psi), color=INK)
@@ -56,11 +57,11 @@ def draw_along(where: Where, locking: float) -> bytes:
         shear.set_ylabel("shear (degrees)")
         shear.set_xlabel("y along the span (m)")
         shear.set_xlim(float(y.min()), float(y.max()))
-        shear.set_ylim(bottom=0.0)
+        shear.set_ylim(0.0, 1.2 * max(shear.get_ylim()[1] / 1.05, 1e-3))
         low, high = turn.get_ylim()
         room = 0.12 * max(high - low, 1e-3)
         turn.set_ylim(low - room, high + room)
-        shear.legend(loc="best", ncols=3)
+        figure.legend(*shear.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         return png(figure)
 
 
@@ -201,21 +202,28 @@ def _loss(ax: Axes, nearest: NearestSpar) -> None:
 
 def draw_envelope(envelope: Envelope, locking: float) -> bytes:
     """Largest shear over amplitude and wavelength, every design draped, and the amplitude that is allowed."""
+    from matplotlib.ticker import LogLocator
+
     with styled():
         figure = new_figure(_WIDTH, 3.3)
         ax = figure.subplots()
         largest = envelope.largest
         colours = shear_colour(largest, locking)
         colours[~np.isfinite(largest)] = NO_CLOTH
-        across, up = _borders(envelope.wavelength / METRE), _borders(envelope.amplitude)
-        ax.pcolormesh(across, up, colours / 255.0, shading="flat")
-        for scale, values in ((ax.set_xscale, envelope.wavelength), (ax.set_yscale, envelope.amplitude)):
+        across = _borders(envelope.wavelength / METRE)
+        up = np.stack([_borders(column) for column in envelope.amplitude.T], axis=1)
+        for j, (left, right) in enumerate(pairwise(across.tolist())):
+            ax.pcolormesh([left, right], up[:, j], colours[:, j : j + 1] / 255.0, shading="flat")
+        for scale, values in ((ax.set_xscale, envelope.wavelength), (ax.set_yscale, envelope.amplitude[:, 0])):
             if _geometric(values):
                 scale("log")
         for axis in (ax.xaxis, ax.yaxis):
+            if axis.get_scale() == "log":
+                axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.minorticks_off()
         ax.set_xlim(across[0], across[-1])
-        ax.set_ylim(up[0], up[-1])
+        ax.set_ylim(float(up.min()), float(up.max()))
         known = np.isfinite(envelope.allowed)
         ax.plot(envelope.wavelength[known] / METRE, envelope.allowed[known], color=INK, linewidth=2.2,
                 label="allowed amplitude")  # fmt: skip
