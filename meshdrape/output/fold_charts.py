@@ -36,7 +36,7 @@ _CELLS: Final = 24_000  # at most so many are drawn of a map
 RULES: Final = {"gamma 0": "upright, γ = 0", "free": "straight on", "best": "best γ", "design": "as designed"}
 
 
-def draw_along(where: Where, locking: float) -> bytes:
+def draw_along(where: Where, locking: float, gamma: float) -> bytes:
     """ψ and the shear of both regions along the crease, with the pair of stations that sets each maximum."""
     with styled():
         figure = new_figure(_WIDTH, 3.8)
@@ -46,13 +46,13 @@ def draw_along(where: Where, locking: float) -> bytes:
         turn.set_ylabel("ψ (degrees)")
         turn.set_title("Turn of the net where it crosses the crease")
         shear.set_title("Largest shear down each column")
-        for values, pair, colour, name in (
-            (where.wing_fed, where.worst_wing_fed, ORANGE, "rows from the sheet laid first"),
-            (where.ribbon_fed, where.worst_ribbon_fed, BLUE, "rows from the left-most ribbon"),
+        for values, pair, turned, colour, name in (
+            (where.wing_fed, where.worst_wing_fed, None, ORANGE, "rows from the sheet laid first"),
+            (where.ribbon_fed, where.worst_ribbon_fed, gamma, BLUE, "rows from the left-most ribbon"),
         ):
             shear.plot(y, np.degrees(values), color=colour, label=name)
             if pair is not None:
-                _mark_pair(turn, shear, where, pair, colour)
+                _mark_pair(turn, shear, where, pair, turned, colour)
         shear.axhline(np.degrees(locking), color=VERMILION, linewidth=1.0, label=f"locking, {np.degrees(locking):g}°")
         shear.set_ylabel("shear (degrees)")
         shear.set_xlabel("y along the span (m)")
@@ -65,15 +65,22 @@ def draw_along(where: Where, locking: float) -> bytes:
         return png(figure)
 
 
-def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, colour: str) -> None:
-    """The stations of the row and of the column on the curve of ψ, and the shear at the column's."""
+def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, gamma: float | None, colour: str) -> None:
+    """The stations of the row and of the column, with the turn each brings, and the shear at the column's.
+
+    A row brings the ψ of its own crossing, one from the left-most ribbon that ribbon's gamma.
+    """
     order = np.argsort(where.y)
     stations = np.array([pair.y_row, pair.y_column])
     psi = np.degrees(np.interp(stations, where.y[order], where.psi[order]))
+    if gamma is not None:
+        psi[0] = np.degrees(gamma)
     turn.plot(stations / METRE, psi, "o--", color=colour, markersize=6, markerfacecolor="white", linewidth=1.0,
               clip_on=False, zorder=5)  # fmt: skip
-    for name, at, value in zip(("row", "column"), stations / METRE, psi, strict=True):
-        turn.annotate(name, (at, value), (0, 6), textcoords="offset points", color=colour, fontsize=7.5, ha="center")
+    names = ("row" if gamma is None else "left ribbon, γ", "column")
+    aside = (0, 6, "center") if gamma is None else (9, -9, "left")
+    for name, at, value, (dx, dy, align) in zip(names, stations / METRE, psi, (aside, (0, 6, "center")), strict=True):
+        turn.annotate(name, (at, value), (dx, dy), textcoords="offset points", color=colour, fontsize=7.5, ha=align)
     value = abs(np.degrees(pair.shear))
     shear.plot(stations[1] / METRE, value, "o", color=colour, markersize=6, markerfacecolor="white", clip_on=False,
                zorder=5)  # fmt: skip
@@ -258,7 +265,7 @@ def pictures(answer: FoldAnswer) -> dict[str, bytes]:
     design, locking = answer.design, answer.verdict.locking_angle
     second = "spar" if design.first == "wing" else "wing"
     drawn = {
-        "along": draw_along(answer.where, locking),
+        "along": draw_along(answer.where, locking, answer.verdict.gamma),
         "spar": draw_spar(answer.where.spar, answer.where, locking, second),
         "limits": draw_limits(design, answer.limits, answer.nearest),
     }
