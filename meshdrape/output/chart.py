@@ -98,13 +98,17 @@ def png(figure: Figure, dpi: int = DPI, *, palette: bool = True) -> bytes:
 
 
 def packed(picture: bytes, width: int) -> bytes:
-    """A PNG made no wider than so many pixels, with a palette of 256 colours."""
+    """A PNG made no wider than so many pixels, in a palette of 256 colours, dithered to keep its shades."""
     from PIL import Image
 
     image = Image.open(io.BytesIO(picture)).convert("RGB")
     if image.width > width:
         image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
-    return _packed(image, palette=True)
+    palette = image.quantize(256, Image.Quantize.MEDIANCUT, kmeans=4)
+    entries = np.array(palette.getpalette(), dtype=np.uint8).reshape(-1, 3)
+    entries[entries.min(axis=1) > 250] = 255  # paper stays white
+    palette.putpalette(entries.tobytes())
+    return _packed(image.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG), palette=False)
 
 
 def _packed(image: Any, *, palette: bool) -> bytes:

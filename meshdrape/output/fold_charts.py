@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -35,44 +36,51 @@ _CELLS: Final = 24_000  # at most so many are drawn of a map
 RULES: Final = {"gamma 0": "upright, γ = 0", "free": "straight on", "best": "best γ", "design": "as designed"}
 
 
-def draw_along(where: Where, locking: float) -> bytes:
+def draw_along(where: Where, locking: float, gamma: float) -> bytes:
     """ψ and the shear of both regions along the crease, with the pair of stations that sets each maximum."""
     with styled():
-        figure = new_figure(_WIDTH, 3.7)
+        figure = new_figure(_WIDTH, 3.8)
         turn, shear = figure.subplots(2, 1, sharex=True)
         y = where.y / METRE
         turn.plot(y, np.degrees(where.psi), color=INK)
         turn.set_ylabel("ψ (degrees)")
         turn.set_title("Turn of the net where it crosses the crease")
         shear.set_title("Largest shear down each column")
-        for values, pair, colour, name in (
-            (where.wing_fed, where.worst_wing_fed, ORANGE, "rows from the sheet laid first"),
-            (where.ribbon_fed, where.worst_ribbon_fed, BLUE, "rows from the left-most ribbon"),
+        for values, pair, turned, colour, name in (
+            (where.wing_fed, where.worst_wing_fed, None, ORANGE, "rows from the sheet laid first"),
+            (where.ribbon_fed, where.worst_ribbon_fed, gamma, BLUE, "rows from the left-most ribbon"),
         ):
             shear.plot(y, np.degrees(values), color=colour, label=name)
             if pair is not None:
-                _mark_pair(turn, shear, where, pair, colour)
+                _mark_pair(turn, shear, where, pair, turned, colour)
         shear.axhline(np.degrees(locking), color=VERMILION, linewidth=1.0, label=f"locking, {np.degrees(locking):g}°")
         shear.set_ylabel("shear (degrees)")
         shear.set_xlabel("y along the span (m)")
         shear.set_xlim(float(y.min()), float(y.max()))
-        shear.set_ylim(bottom=0.0)
+        shear.set_ylim(0.0, 1.2 * max(shear.get_ylim()[1] / 1.05, 1e-3))
         low, high = turn.get_ylim()
         room = 0.12 * max(high - low, 1e-3)
         turn.set_ylim(low - room, high + room)
-        shear.legend(loc="best", ncols=3)
+        figure.legend(*shear.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         return png(figure)
 
 
-def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, colour: str) -> None:
-    """The stations of the row and of the column on the curve of ψ, and the shear at the column's."""
+def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, gamma: float | None, colour: str) -> None:
+    """The stations of the row and of the column, with the turn each brings, and the shear at the column's.
+
+    A row brings the ψ of its own crossing, one from the left-most ribbon that ribbon's gamma.
+    """
     order = np.argsort(where.y)
     stations = np.array([pair.y_row, pair.y_column])
     psi = np.degrees(np.interp(stations, where.y[order], where.psi[order]))
+    if gamma is not None:
+        psi[0] = np.degrees(gamma)
     turn.plot(stations / METRE, psi, "o--", color=colour, markersize=6, markerfacecolor="white", linewidth=1.0,
               clip_on=False, zorder=5)  # fmt: skip
-    for name, at, value in zip(("row", "column"), stations / METRE, psi, strict=True):
-        turn.annotate(name, (at, value), (0, 6), textcoords="offset points", color=colour, fontsize=7.5, ha="center")
+    names = ("row" if gamma is None else "left ribbon, γ", "column")
+    aside = (0, 6, "center") if gamma is None else (9, -9, "left")
+    for name, at, value, (dx, dy, align) in zip(names, stations / METRE, psi, (aside, (0, 6, "center")), strict=True):
+        turn.annotate(name, (at, value), (dx, dy), textcoords="offset points", color=colour, fontsize=7.5, ha=align)
     value = abs(np.degrees(pair.shear))
     shear.plot(stations[1] / METRE, value, "o", color=colour, markersize=6, markerfacecolor="white", clip_on=False,
                zorder=5)  # fmt: skip
@@ -201,21 +209,28 @@ def _loss(ax: Axes, nearest: NearestSpar) -> None:
 
 def draw_envelope(envelope: Envelope, locking: float) -> bytes:
     """Largest shear over amplitude and wavelength, every design draped, and the amplitude that is allowed."""
+    from matplotlib.ticker import LogLocator
+
     with styled():
         figure = new_figure(_WIDTH, 3.3)
         ax = figure.subplots()
         largest = envelope.largest
         colours = shear_colour(largest, locking)
         colours[~np.isfinite(largest)] = NO_CLOTH
-        across, up = _borders(envelope.wavelength / METRE), _borders(envelope.amplitude)
-        ax.pcolormesh(across, up, colours / 255.0, shading="flat")
-        for scale, values in ((ax.set_xscale, envelope.wavelength), (ax.set_yscale, envelope.amplitude)):
+        across = _borders(envelope.wavelength / METRE)
+        up = np.stack([_borders(column) for column in envelope.amplitude.T], axis=1)
+        for j, (left, right) in enumerate(pairwise(across.tolist())):
+            ax.pcolormesh([left, right], up[:, j], colours[:, j : j + 1] / 255.0, shading="flat")
+        for scale, values in ((ax.set_xscale, envelope.wavelength), (ax.set_yscale, envelope.amplitude[:, 0])):
             if _geometric(values):
                 scale("log")
         for axis in (ax.xaxis, ax.yaxis):
+            if axis.get_scale() == "log":
+                axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.minorticks_off()
         ax.set_xlim(across[0], across[-1])
-        ax.set_ylim(up[0], up[-1])
+        ax.set_ylim(float(up.min()), float(up.max()))
         known = np.isfinite(envelope.allowed)
         ax.plot(envelope.wavelength[known] / METRE, envelope.allowed[known], color=INK, linewidth=2.2,
                 label="allowed amplitude")  # fmt: skip
@@ -250,7 +265,7 @@ def pictures(answer: FoldAnswer) -> dict[str, bytes]:
     design, locking = answer.design, answer.verdict.locking_angle
     second = "spar" if design.first == "wing" else "wing"
     drawn = {
-        "along": draw_along(answer.where, locking),
+        "along": draw_along(answer.where, locking, answer.verdict.gamma),
         "spar": draw_spar(answer.where.spar, answer.where, locking, second),
         "limits": draw_limits(design, answer.limits, answer.nearest),
     }

@@ -88,7 +88,8 @@ def fold_page(answer: FoldAnswer) -> str:
         _criteria(answer.verdict),
         "<h2>Where</h2>",
         _figure(
-            drawn["along"], "Circles: where the row and the column of the largest shear of the drape cross the crease."
+            drawn["along"],
+            "Circles: turns of the row and of the column of the drape's largest shear, where they cross the crease.",
         ),
         _figure(
             drawn["spar"],

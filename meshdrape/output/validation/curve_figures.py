@@ -77,8 +77,8 @@ def draw_convergence(view: ConvergenceView) -> bytes:
         ax.set_title("Figure 4: how the discrete net tends to its limit")
         ax.grid(visible=True, which="major")
         ax.minorticks_off()
-        ticks = [5, 10, 20, 40, 80]
-        ax.set_xticks([tick for tick in ticks if mm[-1] * 0.99 <= tick <= mm[0] * 1.01])
+        ticks = [1.25, 2.5, 5, 10, 20, 40, 80]
+        ax.set_xticks([tick for tick in ticks if 0.95 * mm[-1] <= tick <= 1.05 * mm[0]])
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.legend(loc="upper left")

@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from meshdrape.study.claims import Claim, Recomputed, Section, Views
     from meshdrape.study.claims.views import ProfileView
 
-_WIDTH: Final = 1500  # pixels of the widest picture
+_WIDTH: Final = 1400  # pixels of the widest picture
 
 _HEAD: Final = """# The study group report, recomputed
 
-Written by `{command}`; nothing on this page is typed in but what the report says. Each number comes from a run: the
-formulas themselves (`meshdrape.theory`), the net of rods and pins on the two unrolled surfaces, and full drapes on
-meshes (`meshdrape.drape`). Each verdict follows from its numbers by a rule with a threshold, given on the line below
-it in small print; `meshdrape/study/claims` holds both.
+Written by `{command}`. Each number comes from a run made then: of the formulas (`meshdrape.theory`), of the net of rods
+and pins on the two unrolled surfaces, and of full drapes on meshes (`meshdrape.drape`). Each verdict follows from its
+numbers by a rule, whose threshold stands below it in small print, and a remark appears only with the verdict it belongs
+to; `meshdrape/study/claims` holds the rules and the runs.
 
 The report: *New Techniques for Composite Wing Manufacture*, D. Barton, H. Ockendon, B. Piette, R. Whittaker and others,
 study group report for Airbus. A sheet of woven ribbons is laid on a wing, z = g_w(y), and folded over its edge onto a
@@ -170,9 +170,9 @@ def _pictures(views: Views) -> Iterator[_Picture]:
     )  # fmt: skip
     yield _Picture(
         "convergence", "Convergence in the spacing",
-        "Largest shear of figure 4 in either region: short of its limit by a first power of the spacing in region I "
-        "(the wiggle is where the last column happens to lie), by the square root of it in region II, whose first row "
-        "leaves the edge tangentially.",
+        "Largest shear of figure 4 in either region, the last column at the span's end: short of its limit by a first "
+        "power of the spacing in region I, by the square root of it in region II, whose first row leaves the edge "
+        "tangentially.",
         draw_convergence(views.convergence),
     )  # fmt: skip
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import degrees
 
 from meshdrape.study.claims.judgement import Judgement, Verdict
 
@@ -20,8 +21,8 @@ class Claim:
     found : str
         What was computed, with its numbers; one sentence or two.
     judgement : Judgement
-    means : (str, str) by turns
-        Remarks for a verdict: shown only if that is the one the numbers gave.
+    remarks : tuple of (Verdict, str)
+        What follows from a verdict: shown only if that is the one the numbers gave.
     """
 
     place: str
@@ -57,14 +58,13 @@ class Section:
 
 def angle(value: float, digits: int = 2) -> str:
     """An angle in rad as text in degrees; in powers of ten where it is next to nothing."""
-    import numpy as np
-
-    degrees = float(np.degrees(value))
-    return number(degrees, digits) + "°"
+    return number(degrees(value), digits) + "°"
 
 
 def number(value: float, digits: int = 2) -> str:
     """A number with so many decimals; in powers of ten where these would show none of it."""
+    if abs(value) < 1e-300:
+        value = 0.0  # without a sign
     if value == 0 or abs(value) >= 0.5 * 10.0**-digits:
         return f"{value:.{digits}f}"
     mantissa, exponent = f"{value:.0e}".split("e")

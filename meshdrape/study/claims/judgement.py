@@ -58,26 +58,29 @@ def _largest(values: ArrayLike) -> float:
     return float(array.max()) if array.size and np.isfinite(array).all() else float("inf")
 
 
+def _within(limit: float, unit: str) -> str:
+    """A limit in words."""
+    return f"error at most {limit:.3g} {unit}".rstrip() if limit > 0 else "no error at all"
+
+
 def equality(error: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """Two numbers that should be the same: HOLDS within a limit, else WRONG."""
     worst = _largest(error)
-    return Judgement(
-        Verdict.HOLDS if worst <= limit else Verdict.WRONG, worst, unit, f"error at most {limit:.3g} {unit}".rstrip()
-    )
+    return Judgement(Verdict.HOLDS if worst <= limit else Verdict.WRONG, worst, unit, _within(limit, unit))
 
 
 def printed(as_printed: ArrayLike, corrected: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """A formula and its obvious correction: HOLDS as printed, MISPRINT where only the correction is right, or WRONG."""
     first, second = _largest(as_printed), _largest(corrected)
     verdict = Verdict.HOLDS if first <= limit else Verdict.MISPRINT if second <= limit else Verdict.WRONG
-    return Judgement(verdict, first, unit, f"error at most {limit:.3g} {unit}".rstrip() + ", as printed or corrected")
+    return Judgement(verdict, first, unit, _within(limit, unit) + ", as printed or corrected")
 
 
 def signed(with_sign: ArrayLike, modulus: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """A signed formula: HOLDS with its sign, SIGN where only its modulus is right, or WRONG."""
     first, second = _largest(with_sign), _largest(modulus)
     verdict = Verdict.HOLDS if first <= limit else Verdict.SIGN if second <= limit else Verdict.WRONG
-    return Judgement(verdict, first, unit, f"error at most {limit:.3g} {unit}".rstrip() + ", with or without the sign")
+    return Judgement(verdict, first, unit, _within(limit, unit) + ", with or without the sign")
 
 
 def first_order(errors: ArrayLike, least: float, unit: str = "", exact: float = 1e-9) -> Judgement:
@@ -148,7 +151,7 @@ def named_region(error_there: float, error_elsewhere: float, limit: float) -> Ju
     """A statement about one region that may be true of the other, rad: HOLDS, SWAPPED or WRONG."""
     verdict = Verdict.HOLDS if error_there <= limit else Verdict.SWAPPED if error_elsewhere <= limit else Verdict.WRONG
     error, most = float(np.degrees(error_there)), float(np.degrees(limit))
-    return Judgement(verdict, error, "deg", f"error at most {most:.3g} deg, in the region named or in the other")
+    return Judgement(verdict, error, "deg", f"error at most {most:.2g} deg, in the region named or in the other")
 
 
 def conditional(error_under_it: ArrayLike, error_without: ArrayLike, limit: float, unit: str = "") -> Judgement:
@@ -160,7 +163,7 @@ def conditional(error_under_it: ArrayLike, error_without: ArrayLike, limit: floa
     verdict = Verdict.HOLDS if max(under, without) <= limit else Verdict.CONDITIONAL
     if under > limit:
         verdict = Verdict.WRONG
-    return Judgement(verdict, without, unit, f"error at most {limit:.3g} {unit}".rstrip() + ", with or without it")
+    return Judgement(verdict, without, unit, _within(limit, unit) + ", with or without it")
 
 
 def occurs(measure: float, least: float, unit: str = "") -> Judgement:

@@ -245,7 +245,8 @@ def _slope_criterion(runs: Runs, place: str, *, upright: bool) -> Claim:
         words.append(f"{family.name} {angle(estimate[-1])} against {angle(true[-1])}")
     laid = "left ribbon upright" if upright else "left ribbon at its best"
     found = f"Real wing draped at {1000 * runs.spacing:.0f} mm, spar 1 m, {laid}: " + "; ".join(words) + "."
-    says = "θ_max = arctan(max |f'|) is confirmed by the numerical solutions and a good estimate."
+    says = "θ_max = arctan(max |f'|), confirmed by the numerical solutions, is a good estimate"
+    says += ", the sheet laid as in the report." if upright else " for a designer, who may turn the left ribbon."
     remarks = (
         (Verdict.UNSAFE, "Unsafe where f' changes sign: wing-fed rows see the whole range of ψ."),
         (Verdict.TOO_STRICT, "It is variation of f' that costs shear, not f' itself."),

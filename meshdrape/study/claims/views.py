@@ -257,13 +257,14 @@ def _criteria(runs: Runs, k: int) -> CriteriaView:
 
 def _convergence(runs: Runs) -> ConvergenceView:
     limit = within_reach(runs.figure_4, 0.6)
-    spacing: FloatArray = np.array([0.08 * 0.5**k for k in range(4 if runs.quick else 7)])
+    # whole columns to the span's end, so that the last one always lies there
+    spacing: FloatArray = runs.figure_4.wing.length / (13.0 * 2.0 ** np.arange(4 if runs.quick else 7))
     nets = [characteristic_net(runs.figure_4, float(h), 0.6) for h in spacing]
     ribbon, wing = (
         region.shear - np.array([net.max_shear(k).shear for net in nets])
         for k, region in ((RIBBON_FED, limit.ribbon_fed), (WING_FED, limit.wing_fed))
     )
-    tail = slice(2, None)
+    tail = slice(1, None)
     orders = [float(np.polyfit(np.log(spacing[tail]), np.log(short[tail]), 1)[0]) for short in (ribbon, wing)]
     draped = []
     for h in spacing[: 1 if runs.quick else 4]:
