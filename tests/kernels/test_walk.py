@@ -142,3 +142,27 @@ def test_off_mould_is_measured_from_the_mould():
         point, distance = surface.closest_point([x, y, 0])
         assert distance < 1e-9
         assert bool(off_mould(mesh, point.face, *point.in_frame(surface), 1e-3)) is off, (x, y)
+
+
+@pytest.mark.parametrize("turn", [0.0, 1e-17, -1e-17, 1e-16, -1e-16, 5e-16, -5e-16, 1e-15, -1e-15, 1e-13, -1e-13])
+def test_along_edges_and_through_vertices_it_ends_in_the_face_that_holds_the_end(turn):
+    """Round-off chooses the side of an edge that is followed; the end's face must hold the end all the same."""
+    surface = SURFACES["plate"]
+    tried = 0
+    for face in range(len(surface.faces)):
+        for k in range(3):
+            tail, head = surface.vertices[surface.faces[face, [k, (k + 1) % 3]]]
+            along = (head - tail) / np.linalg.norm(head - tail)
+            weight = np.zeros(3)
+            weight[[k, (k + 1) % 3]] = 0.7, 0.3
+            place = Place(face, *SurfacePoint(face, weight).in_frame(surface))
+            frame = surface.unfolding.frame[face]
+            dx, dy = along @ frame[3:6], along @ frame[6:9]
+            there = walk(surface, place, (dx - turn * dy, dy + turn * dx), 3.3 * np.linalg.norm(head - tail))
+            if there.code != WALKED:
+                continue
+            tried += 1
+            line = surface.unfolding.line[there.end.face].reshape(3, 3)
+            height = line[:, 0] * there.end.x + line[:, 1] * there.end.y - line[:, 2]
+            assert height.min() > -1e-9, (face, k)
+    assert tried > 100
