@@ -90,12 +90,14 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("mould")
         _announce_compilation(options.quiet)
 
+        from meshdrape.geodesic.guarded import prepare
         from meshdrape.weave import audit, drape, measure, read_off
         from meshdrape.weave.balance import balance
         from meshdrape.weave.summary import fabric_missing, summarise
 
         clock.lap("imports")
         progress.stage("draping")
+        prepare()
         net = drape(
             mould,
             fabric,

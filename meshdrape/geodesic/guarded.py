@@ -59,20 +59,23 @@ def solve_guarded(vertices: FloatArray, faces: IntArray, source: int, targets: I
     return np.full(len(targets), np.inf) if found is None else found
 
 
+def prepare() -> None:
+    """Start the other process now, while something else is done, so that the first question need not wait for it."""
+    _SOLVER.start()
+
+
 class _Solver:
     """The process, started when it is first needed and again when it has ended."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._owner = 0
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
 
     def ask(self, *question: Any) -> FloatArray | None:
         """The answer of :func:`solve`; None if there was none."""
         with self._lock:
-            # a forked process must not share its parent's
-            if self._process is None or self._owner != os.getpid():
-                self._start()
+            self.start()
             process = self._process
             assert process is not None
             assert process.stdin is not None
@@ -86,16 +89,21 @@ class _Solver:
                 self.stop()
                 return None
 
-    def _start(self) -> None:
-        known = os.pathsep.join(path for path in sys.path if path)
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", str(Path(__file__))],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": known},
-        )
-        self._owner = os.getpid()
+    def start(self) -> None:
+        """Start the process unless it runs."""
+        with self._lock:
+            # a forked process must not share its parent's
+            if self._process is not None and self._owner == os.getpid():
+                return
+            known = os.pathsep.join(path for path in sys.path if path)
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", str(Path(__file__))],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                env={**os.environ, "PYTHONPATH": known},
+            )
+            self._owner = os.getpid()
 
     def stop(self) -> None:
         """End the process, if it is ours."""
