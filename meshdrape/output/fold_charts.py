@@ -80,7 +80,8 @@ def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, gamma: float |
     names = ("row" if gamma is None else "left ribbon, γ", "column")
     aside = (0, 6, "center") if gamma is None else (9, -9, "left")
     for name, at, value, (dx, dy, align) in zip(names, stations / METRE, psi, (aside, (0, 6, "center")), strict=True):
-        turn.annotate(name, (at, value), (dx, dy), textcoords="offset points", color=colour, fontsize=7.5, ha=align)
+        turn.annotate(name, (at, value), (dx, dy), textcoords="offset points", color=colour, fontsize=7.5, ha=align,
+                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8})  # fmt: skip
     value = abs(np.degrees(pair.shear))
     shear.plot(stations[1] / METRE, value, "o", color=colour, markersize=6, markerfacecolor="white", clip_on=False,
                zorder=5)  # fmt: skip

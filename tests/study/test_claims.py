@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshdrape.study.claims import Runs, Verdict, section_4, section_5, section_6, section_7, sections_2_3
+from meshdrape.study.claims import (
+    Runs,
+    Verdict,
+    section_4,
+    section_5,
+    section_6,
+    section_7,
+    section_7_edges,
+    sections_2_3,
+)
 from meshdrape.study.claims import judgement as rule
 from meshdrape.study.claims.drapes import drape_fold
 from meshdrape.theory import RIBBON_FED, WING_FED, Fold, quadratic, within_reach
@@ -98,8 +107,8 @@ EXPECTED = (
     (section_7.equation_39, Verdict.FIRST_ORDER),
     (section_7.cylinder_askew, Verdict.CONDITIONAL),
     (section_7.only_cylinders, Verdict.WRONG),
-    (section_7.equation_43_strip, Verdict.WRONG),
-    (section_7.cube_corner, Verdict.HOLDS),
+    (section_7_edges.equation_43_strip, Verdict.WRONG),
+    (section_7_edges.cube_corner, Verdict.HOLDS),
 )
 
 

@@ -1,6 +1,6 @@
 """The study group report recomputed, claim by claim: what it says, what was found, and the verdict that follows.
 
-runs, drapes -> sections_2_3 ... section_7 -> claim + judgement     a Claim for each statement
+runs, drapes -> sections_2_3 ... section_7_edges -> claim + judgement     a Claim for each statement
              -> views                                               what the report's figures show, from the same runs
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from meshdrape.study.claims import section_4, section_5, section_6, section_7, sections_2_3
+from meshdrape.study.claims import section_4, section_5, section_6, section_7, section_7_edges, sections_2_3
 from meshdrape.study.claims.claim import Claim, Section
 from meshdrape.study.claims.judgement import Judgement, Verdict
 from meshdrape.study.claims.runs import Runs
@@ -22,7 +22,7 @@ _GROUPS: tuple[tuple[str, tuple[Callable[[Runs], Claim], ...]], ...] = (
     ("Section 4: perturbation of the origami solution", section_4.CLAIMS),
     ("Section 5: a simple special solution", section_5.CLAIMS),
     ("Section 6: alternative analytic treatment", section_6.CLAIMS),
-    ("Section 7: a continuum model", section_7.CLAIMS),
+    ("Section 7: a continuum model", section_7.CLAIMS + section_7_edges.CLAIMS),
 )
 
 

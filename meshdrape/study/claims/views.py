@@ -258,7 +258,7 @@ def _criteria(runs: Runs, k: int) -> CriteriaView:
 def _convergence(runs: Runs) -> ConvergenceView:
     limit = within_reach(runs.figure_4, 0.6)
     # whole columns to the span's end, so that the last one always lies there
-    spacing: FloatArray = runs.figure_4.wing.length / (13.0 * 2.0 ** np.arange(4 if runs.quick else 7))
+    spacing = np.array([runs.figure_4.wing.length / (13 << k) for k in range(4 if runs.quick else 7)])
     nets = [characteristic_net(runs.figure_4, float(h), 0.6) for h in spacing]
     ribbon, wing = (
         region.shear - np.array([net.max_shear(k).shear for net in nets])
