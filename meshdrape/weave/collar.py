@@ -78,6 +78,12 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
     # what fills a notch leans as the notch had it: no ruling of the mould's
     filling = surface.face_rim[face] >= 0
     ruled &= ~(filling | np.roll(filling, 1))
+    # nor are there rulings where those of neighbours point every way: there the planes meet by noise
+    apart = np.linalg.norm(np.cross(ruling, np.roll(ruling, -1, axis=0)), axis=1) > RULINGS_APART
+    both = ruled & np.roll(ruled, -1)
+    stray = (both & apart) | np.roll(both & apart, 1)
+    kin = (both & ~apart) | np.roll(both & ~apart, 1)
+    ruled &= ~stray | kin | (angle >= CREASE)
     # one outer vertex a border vertex, as far out as both strips are deep
     middle = before + outward
     size = np.linalg.norm(middle, axis=1)
@@ -94,10 +100,9 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         if not folded.any():
             break
         touched = folded | np.roll(folded, 1)
-        # planes of a doubly curved border meet at random: there a mitre is the better guess
-        apart = np.linalg.norm(np.cross(ruling, np.roll(ruling, -1, axis=0)), axis=1) > RULINGS_APART
-        crossing = folded & ruled & np.roll(ruled, -1) & apart
-        stray = (crossing | np.roll(crossing, 1)) & (angle < CREASE)
+        # planes of a doubly curved border meet at random: a ruling that is not one of a family is worse than a mitre
+        family = ruled & np.roll(ruled, -1) & ~apart
+        stray = touched & ruled & ~(family & np.roll(family, 1)) & (angle < CREASE)
         ruled &= ~stray
         if not stray.any():
             shrink[touched] *= 0.8
