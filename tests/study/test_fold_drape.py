@@ -140,7 +140,7 @@ def test_the_sample_that_the_readme_shows():
 
 def test_regions_where_rows_come_back():
     """Rows that have been back on the wing belong to neither region: the tags of the net made without a mesh."""
-    of = design(spar={"deviation": "sine", "c": 0.05, "wavelength": 3.5}, spacing=0.05)
+    of = design(spar={"deviation": "sine", "c": 0.15, "wavelength": 3.5}, spacing=0.05)
     net = characteristic_net(of.fold, 50.0, 1000.0)
     assert len(net.sheet.exit_row) > 10
     assert np.array_equal(regions(net.sheet.on_spar), net.region)
