@@ -138,9 +138,10 @@ def test_the_sample_that_the_readme_shows():
     assert f"(20) arctan max|f'|             -        {steepest:.2f}   unsafe here" in shown
 
 
-def test_regions_where_rows_come_back():
-    """Rows that have been back on the wing belong to neither region: the tags of the net made without a mesh."""
-    of = design(spar={"deviation": "sine", "c": 0.15, "wavelength": 3.5}, spacing=0.05)
+@pytest.mark.parametrize(("c", "wavelength"), [(0.15, 3.5), (-1.2, 14.0)])
+def test_regions_where_rows_come_back(c, wavelength):
+    """The tags of the net made without a mesh: a ribbon's row that went over the wing is wing-fed when it is back."""
+    of = design(spar={"deviation": "sine", "c": c, "wavelength": wavelength}, spacing=0.05)
     net = characteristic_net(of.fold, 50.0, 1000.0)
     assert len(net.sheet.exit_row) > 10
     assert np.array_equal(regions(net.sheet.on_spar), net.region)
