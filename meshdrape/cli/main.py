@@ -19,7 +19,7 @@ COMMANDS = {
     "drape": "lay a fabric on a mould and write the net",
     "audit": "check a finished net again from its file alone",
     "inspect": "list the faces of a mould and check its mesh",
-    "fold": "say how far a spar may leave the origami fold, and what to change",
+    "fold": "say how far a spar may leave the origami fold",
     "mould": "make a mould by one of the scripts that come with meshdrape",
     "validate": "recompute the study group report: every claim, its error and a verdict",
 }

@@ -4,12 +4,15 @@ Sources: study group report, sections 3.4 (figure 4), 2 and 4; numbers of the di
 `tests/validation`. Regions are counted by each row's own history.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from fold_designs import FIGURE_4, design, draped, in_degrees
 
+from meshdrape.study.fold.design import read_design
 from meshdrape.study.fold.frame import Cloth, frame_of
-from meshdrape.study.fold.lay import lay
+from meshdrape.study.fold.lay import lay, regions
 from meshdrape.study.fold.mould import cad_mould, facet_bounds, ruled_mould
 from meshdrape.theory import characteristic_net, discrete_net, psi_range
 
@@ -121,3 +124,24 @@ def test_cad_mould_in_its_frame_is_outward_and_ends_in_the_crease():
     assert (y[0], y[-1]) == pytest.approx((0, 14000), abs=1e-6)
     assert made.crease[:, 0] == pytest.approx(frame.fold.spar(y), abs=2e-4)
     assert np.degrees(made.psi_at_start()) == pytest.approx(np.degrees(frame.fold.psi(0.0)), abs=0.02)
+
+
+def test_the_sample_that_the_readme_shows():
+    """Its largest shear as printed there, and what (20) makes of it."""
+    root = Path(__file__).parents[2]
+    of = read_design(root / "samples" / "designs" / "real_wing_sine.toml")
+    wing_fed, ribbon_fed = in_degrees(draped(of))
+    shown = (root / "README.md").read_text(encoding="utf-8")
+    assert f"the cloth shears by {wing_fed:.2f} deg and locks at 7.00 deg" in shown
+    assert f"characteristics             {wing_fed:.2f}        {ribbon_fed:.2f}   right here" in shown
+    steepest = np.degrees(np.arctan(np.abs(of.deviation_profile.slope(np.linspace(0, 14000, 14001))).max()))
+    assert f"(20) arctan max|f'|             -        {steepest:.2f}   unsafe here" in shown
+
+
+@pytest.mark.parametrize(("c", "wavelength"), [(0.15, 3.5), (-1.2, 14.0)])
+def test_regions_where_rows_come_back(c, wavelength):
+    """The tags of the net made without a mesh: a ribbon's row that went over the wing is wing-fed when it is back."""
+    of = design(spar={"deviation": "sine", "c": c, "wavelength": wavelength}, spacing=0.05)
+    net = characteristic_net(of.fold, 50.0, 1000.0)
+    assert len(net.sheet.exit_row) > 10
+    assert np.array_equal(regions(net.sheet.on_spar), net.region)

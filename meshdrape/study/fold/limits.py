@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from meshdrape.study.fold.mould import ruled_mould
 from meshdrape.theory import Fold, Reach, within_reach
 
 # The drape at the factor found locks within this of the angle, rad, and not past it.
-TOLERANCE = math.radians(0.002)
+TOLERANCE = math.radians(0.004)
 # Factors are tried up to the one at which f is this steep, and grow by this from one to the next.
 STEEPEST, GROWTH = 1.5, 1.3
 MOST_DRAPES = 16
@@ -39,7 +39,11 @@ def limits(design: Design, step: Callable[[int], None] | None = None) -> tuple[L
     """
     rules = [*RULES, *(["design"] if design.rule == "design" else [])]
     search = _Search(design, step or (lambda _: None))
-    return tuple(search.limit(rule) for rule in rules)
+    found: list[Limit] = []
+    for rule in rules:
+        same = next((limit for limit in found if search.alike(limit, rule)), None)
+        found.append(search.limit(rule) if same is None else replace(same, rule=rule))
+    return tuple(found)
 
 
 def scaled(design: Design, factor: float) -> Frame:
@@ -55,11 +59,19 @@ class _Search:
     design: Design
     step: Callable[[int], None]
     drapes: int = 0
+    spacing_hides: float = 0.0  # by how much the last drape found stayed below what was foretold, rad
     _reach: dict[float, tuple[Frame, Reach]] = field(default_factory=dict)
     _laid: dict[tuple[float, float], FoldDrape | None] = field(default_factory=dict)
 
     def gamma(self, frame: Frame, rule: str) -> float:
         return frame.gamma(self.design.gamma if rule == "design" else rule)
+
+    def alike(self, limit: Limit, rule: str) -> bool:
+        """Whether a rule gives the gamma of the one whose limit is known, there and half way."""
+        if not limit.factor:
+            return False
+        frames = [scaled(self.design, part * limit.factor) for part in (1.0, 0.5)]
+        return all(abs(self.gamma(frame, rule) - self.gamma(frame, limit.rule)) < 1e-12 for frame in frames)
 
     def foretold(self, factor: float, rule: str) -> float:
         """Largest shear within reach, rad."""
@@ -97,7 +109,7 @@ class _Search:
             return Limit(rule, None, self.gamma(frame, rule), Shear(None, None), math.inf)
         locking, most = design.locking_angle, STEEPEST / steepest
         # from far below any limit; nothing locks there but a ribbon turned for a larger factor
-        factor, before = min(0.05 * math.tan(locking) / steepest, 0.5), None
+        factor, before = min(0.2 * math.tan(locking) / steepest, 0.5), None
         while factor <= most:
             locks = self.foretold(factor, rule) > locking
             if locks and before is not None:
@@ -113,9 +125,10 @@ class _Search:
     def _between(self, rule: str, low: float, high: float) -> Limit:
         """Root of locking angle - TOLERANCE / 2 - drape's shear: foretold, then corrected drape by drape."""
         target = self.design.locking_angle - TOLERANCE / 2
-        for _ in range(7):
+        for _ in range(9):
             middle = (low + high) / 2
-            low, high = (middle, high) if self.foretold(middle, rule) <= target else (low, middle)
+            near = self.foretold(middle, rule) - self.spacing_hides <= target
+            low, high = (middle, high) if near else (low, middle)
         slope = (self.foretold(1.01 * high, rule) - self.foretold(0.99 * high, rule)) / (0.02 * high)
         factor, below, above = high, None, None
         best: tuple[float, FoldDrape] | None = None
@@ -142,4 +155,5 @@ class _Search:
                 factor = min(max(factor + change, 0.5 * factor), 1.5 * factor)
         if best is None:
             return Limit(rule, 0.0, self.gamma(scaled(self.design, 0.0), rule), Shear(None, None), high)
+        self.spacing_hides = self.foretold(best[0], rule) - best[1].asked
         return Limit(rule, best[0], best[1].gamma, best[1].largest, high)
