@@ -52,10 +52,10 @@ def resampled():
 
 
 def in_parts():
-    """The noisy bowl, a ball beside it, and a speck of three triangles."""
+    """The noisy bowl, a ball beside it, and a speck of two triangles."""
     bowl, ball = noisy(), icosphere(3, 80.0)
     speck = np.array([[900.0, 0, 0], [901, 0, 0], [900, 1, 0], [901, 1, 0.2]])
-    vertices = np.concatenate([bowl[0], (*ball.vertices, 600, 0, 0), speck])
+    vertices = np.concatenate([bowl[0], ball.vertices + np.array([600.0, 0, 0]), speck])
     n, m = len(bowl[0]), len(ball.vertices)
     triangles = np.concatenate([bowl[1], ball.triangles + n, np.array([[0, 1, 2], [1, 3, 2]]) + n + m])
     return vertices, triangles
