@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from copy import copy
 from threading import Lock
 
 import numpy as np
@@ -66,6 +67,12 @@ class Judge:
         self._settle_every = settle_every
         self._slack = border_slack(fabric)
         self._lock = Lock()
+
+    def on(self, lattice: Lattice, start: Start) -> Judge:
+        """The same judge, and what it has counted, for another lattice."""
+        other = copy(self)
+        other.start, other._lattice, other._lock = start, lattice, Lock()
+        return other
 
     def decide(self, node: tuple[int, int], why: int, sense: Sense) -> None:
         """Give a node (i, j) a place and its status for good; `why` is what the kernel reported."""

@@ -120,19 +120,34 @@ def lay(
             break
         lattice, start = _grown(lattice, start, grow, fabric, memory)
     if has_bays(lattice.status):
-        # cloth beside the mould must not take the place, in the lattice, of cloth on an arm beyond
-        trim(surface, fabric, lattice, start, threads, hem=0)
-        start = _generators_cut(lattice, start)
-        while True:
-            judge = Judge(surface, fabric, lattice, start, stop_at=stop_at, settle_every=settle_every)
-            fill_bays(surface, fabric, lattice, judge)
-            start, settled, seconds = judge.start, settled + judge.settled, seconds + judge.seconds
-            grow = _room_wanted(lattice, start, counts)
-            if not any(grow):
-                break
-            lattice, start = _grown(lattice, start, grow, fabric, memory)
-            lattice.status[lattice.status == NodeStatus.NOT_REACHED] = NodeStatus.OUTSIDE
+        judge = Judge(surface, fabric, lattice, start, stop_at=stop_at, settle_every=settle_every)
+        covered = _with_bays(surface, fabric, lattice, judge, counts, memory, threads)
+        if covered is not None:
+            lattice, judge = covered
+            start = judge.start
+        settled, seconds = settled + judge.settled, seconds + judge.seconds
     return Laid(surface, depth, lattice, start, settled, seconds)
+
+
+def _with_bays(
+    surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge, counts: list[int], memory: int, threads: int
+) -> tuple[Lattice, Judge] | None:
+    """The lattice with cloth on arms that lie back towards the seed; None where there are none."""
+    n_placed = np.count_nonzero(lattice.status == NodeStatus.PLACED)
+    work = Lattice._make(array.copy() for array in lattice)
+    # cloth beside the mould must not take the place, in the lattice, of cloth on an arm beyond
+    trim(surface, fabric, work, judge.start, threads, hem=0)
+    start = _generators_cut(work, judge.start)
+    while True:
+        judge = judge.on(work, start)
+        fill_bays(surface, fabric, work, judge)
+        start = judge.start
+        grow = _room_wanted(work, start, counts)
+        if not any(grow):
+            break
+        work, start = _grown(work, start, grow, fabric, memory)
+        work.status[work.status == NodeStatus.NOT_REACHED] = NodeStatus.OUTSIDE
+    return (work, judge) if np.count_nonzero(work.status == NodeStatus.PLACED) > n_placed else None
 
 
 def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:
