@@ -80,10 +80,8 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
     ruled &= ~(filling | np.roll(filling, 1))
     # nor are there rulings where those of neighbours point every way: there the planes meet by noise
     apart = np.linalg.norm(np.cross(ruling, np.roll(ruling, -1, axis=0)), axis=1) > RULINGS_APART
-    both = ruled & np.roll(ruled, -1)
-    stray = (both & apart) | np.roll(both & apart, 1)
-    kin = (both & ~apart) | np.roll(both & ~apart, 1)
-    ruled &= ~stray | kin | (angle >= CREASE)
+    alone = ruled & (np.roll(ruled, 1) | np.roll(ruled, -1)) & ~_in_family(ruled, apart)
+    ruled &= ~alone | (angle >= CREASE)
     # one outer vertex a border vertex, as far out as both strips are deep
     middle = before + outward
     size = np.linalg.norm(middle, axis=1)
@@ -101,8 +99,9 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
             break
         touched = folded | np.roll(folded, 1)
         # planes of a doubly curved border meet at random: a ruling that is not one of a family is worse than a mitre
-        family = ruled & np.roll(ruled, -1) & ~apart
-        stray = touched & ruled & ~(family & np.roll(family, 1)) & (angle < CREASE)
+        crossing = folded & ruled & np.roll(ruled, -1) & apart
+        stray = crossing | np.roll(crossing, 1) | (touched & ruled & ~_in_family(ruled, apart))
+        stray &= ruled & (angle < CREASE)
         ruled &= ~stray
         if not stray.any():
             shrink[touched] *= 0.8
@@ -133,6 +132,13 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
         else:
             new_faces += [(b, a, outer_b), (a, outer_a, outer_b)]
     return np.array(new_vertices), np.array(new_faces, dtype=np.int64)
+
+
+def _in_family(ruled: NDArray[np.bool_], apart: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether each ruling is one of three or more in a row of which neighbours are nearly parallel."""
+    kin = ruled & np.roll(ruled, -1) & ~apart
+    three = kin & np.roll(kin, -1)
+    return np.asarray(three | np.roll(three, 1) | np.roll(three, 2))
 
 
 def _fan(first: FloatArray, last: FloatArray, along: FloatArray, turn: float) -> list[FloatArray]:
