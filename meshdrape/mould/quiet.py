@@ -1,4 +1,4 @@
-"""Open CASCADE prints to the terminal what only one line of ours should say."""
+"""Open CASCADE kept from the terminal, from crashing this process, and from being interrupted half-way."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import os
 import resource
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
 
 
 def survives(action: Callable[[], object], seconds: float) -> bool:
@@ -41,6 +43,22 @@ def survives(action: Callable[[], object], seconds: float) -> bool:
             os.waitpid(child, 0)
             return False
         time.sleep(0.005)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Hold Ctrl-C back for the length of the block: the import of some C++ libraries crashes on it."""
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGINT) is None:
+        yield
+        return
+    pressed: list[tuple[int, FrameType | None]] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append((number, frame)))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if pressed and callable(before):
+        before(*pressed[0])
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import FileError, missing_library
-from meshdrape.mould.quiet import quiet, survives
+from meshdrape.mould.quiet import quiet, survives, uninterrupted
 
 # A file that takes longer than this to read, and so much longer a byte, is taken to hang.
 SECONDS_TO_READ, SECONDS_A_BYTE = 15.0, 1e-5
@@ -34,7 +34,7 @@ class NamedShape:
 def cadquery_module() -> Any:
     """The cadquery package; MissingLibraryError if the system lacks a library it needs."""
     try:
-        with quiet():
+        with quiet(), uninterrupted():
             import cadquery
     except ImportError as error:
         raise missing_library(error) from error
