@@ -20,7 +20,7 @@ from meshdrape.cli.options import (
     read_mould,
     read_path,
 )
-from meshdrape.cli.progress import Progress
+from meshdrape.cli.progress import Progress, compilation_told
 
 # libigl's audit may take this long, s, and stops at this many edges.
 AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
@@ -88,7 +88,6 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
             require_refinable(mould)
         clock.lap("mould")
-        _announce_compilation(options.quiet)
 
         from meshdrape.geodesic.guarded import prepare
         from meshdrape.weave import audit, drape, measure, read_off
@@ -98,22 +97,23 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("imports")
         progress.stage("draping")
         prepare()
-        net = drape(
-            mould,
-            fabric,
-            options.seed,
-            options.direction,
-            engine=options.engine,
-            extent=options.extent,
-            warp_turn=options.warp_turn_deg,
-            weft_turn=options.weft_turn_deg,
-            warp_path=warp_path,
-            weft_path=weft_path,
-            stop_at=options.stop_at,
-            recrossing=options.recrossing,
-            threads=options.threads,
-            progress=progress.step,
-        )
+        with compilation_told(options.quiet):
+            net = drape(
+                mould,
+                fabric,
+                options.seed,
+                options.direction,
+                engine=options.engine,
+                extent=options.extent,
+                warp_turn=options.warp_turn_deg,
+                weft_turn=options.weft_turn_deg,
+                warp_path=warp_path,
+                weft_path=weft_path,
+                stop_at=options.stop_at,
+                recrossing=options.recrossing,
+                threads=options.threads,
+                progress=progress.step,
+            )
         clock.lap("drape")
         progress.stage("measuring")
         measures = measure(net)
@@ -166,13 +166,6 @@ class _Clock:
     def stages(self) -> dict[str, float]:
         """Seconds by stage, and in all."""
         return {**self._laps, "total": time.perf_counter() - self._begun}
-
-
-def _announce_compilation(quiet: bool) -> None:
-    from meshdrape.kernels.cache import is_compiled
-
-    if not quiet and not is_compiled():
-        sys.stderr.write("meshdrape: compiling the kernels, once; this takes about half a minute\n")
 
 
 def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, picture: bool) -> list[Path]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshdrape.cli.main import DONE
-from meshdrape.cli.progress import Progress
+from meshdrape.cli.progress import Progress, compilation_told
 from meshdrape.errors import FileError
 
 if TYPE_CHECKING:
@@ -66,17 +66,17 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     design = read_design(options.design)
     with Progress(options.quiet) as progress:
         progress.stage("reading the design")
-        _announce_compilation(options.quiet)
         from meshdrape.study.fold import facts, fold_answer
 
-        answer = fold_answer(
-            design,
-            nearest=options.nearest,
-            chart=options.chart,
-            family=options.family,
-            stage=progress.stage,
-            step=progress.step,
-        )
+        with compilation_told(options.quiet):
+            answer = fold_answer(
+                design,
+                nearest=options.nearest,
+                chart=options.chart,
+                family=options.family,
+                stage=progress.stage,
+                step=progress.step,
+            )
         progress.stage("writing")
         for target in targets:
             _write(answer, target)
@@ -101,10 +101,3 @@ def _write(answer: FoldAnswer, target: Path) -> None:
     from meshdrape.study.fold import facts
 
     write_json(facts(answer), target)
-
-
-def _announce_compilation(quiet: bool) -> None:
-    from meshdrape.kernels.cache import is_compiled
-
-    if not quiet and not is_compiled():
-        sys.stderr.write("meshdrape: compiling the kernels, once; this takes about half a minute\n")

@@ -3,12 +3,35 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from meshdrape.cli.interrupt import check
 
 PATIENCE = 2.0
+# Input that cannot be draped is found before any kernel is needed, well within this, s.
+BEFORE_KERNELS = 1.5
+
+
+@contextmanager
+def compilation_told(quiet: bool) -> Iterator[None]:
+    """Say that the kernels are being compiled, if they are and it takes its time."""
+    from meshdrape.kernels.cache import is_compiled
+
+    if quiet or is_compiled():
+        yield
+        return
+    notice = "meshdrape: compiling the kernels, once; this takes about half a minute\n"
+    timer = threading.Timer(BEFORE_KERNELS, sys.stderr.write, [notice])
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 class Progress:
