@@ -8,11 +8,10 @@ import math
 
 from numba import njit
 
-from meshdrape.kernels.certify import second_route, turned_over
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, place
 from meshdrape.kernels.shear import past_stop
-from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, LOST, STOPPED, UNSURE
+from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, LOST, STOPPED, UNSURE, straight_on
 from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
 
 OUTSIDE = 2
@@ -233,23 +232,15 @@ def complete(
                     continue
                 beside = status[pi, pj] == PLACED
                 _, _, dx, dy = edge_ends(mesh, net, start, family, bi, bj, step, length)
-                size = math.sqrt(dx * dx + dy * dy)
-                dx /= size
-                dy /= size
-                tail = net.face[pi, pj]
-                x = net.xy[pi, pj, 0]
-                y = net.xy[pi, pj, 1]
-                doubted = second_route(mesh.plane, mesh.neighbour, detours.tangent, tail, x, y, dx, dy, length)
-                code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, tail, x, y, dx, dy, length)
-                if code != WALKED:
+                code = straight_on(mesh, detours, net, start, family, pi, pj, step, i, j, dx, dy, length, slack, report)
+                if code == OUTSIDE:
                     continue
-                net.face[i, j] = f
-                net.xy[i, j, 0] = x + length * ex
-                net.xy[i, j, 1] = y + length * ey
-                keep_edge(net, start, family, pi, pj, step, dx, dy, ex, ey)
                 why = NOWHERE
-                if doubted or turned_over(detours.normal, tail, f):
+                if code >= DOUBTED:
                     why = FREE_WARP if family == WARP else FREE_WEFT
+                else:
+                    # counted once it is known to agree with its other neighbours
+                    report[0] -= 1
             if why != NOWHERE:
                 status[i, j] = NOT_CONVERGED
                 report[2] = i

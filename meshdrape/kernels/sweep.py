@@ -316,25 +316,25 @@ def _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, 
         if ia != i0:
             if status[ia - si, j] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WARP, ia - si, j, si, warp)
-                return _step(mesh, detours, net, start, WARP, ia, j, si, i, j, dx, dy, warp, slack, report)
+                return straight_on(mesh, detours, net, start, WARP, ia, j, si, i, j, dx, dy, warp, slack, report)
         elif status[ia, jb] <= OFF_MOULD:
             # from the weft generator itself: at the initial angle
             _, _, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
             c = math.cos(start.sector[half])
             s = -side * math.sin(start.sector[half])
-            return _step(
+            return straight_on(
                 mesh, detours, net, start, WARP, ia, j, si, i, j, c * gx - s * gy, s * gx + c * gy, warp, slack, report
             )
     if has_b and status[ia, j] == OUTSIDE and _near_mould(status, i, jb, 0, -sj, i0, j0):
         if jb != j0:
             if status[i, jb - sj] <= OFF_MOULD:
                 _, _, dx, dy = edge_ends(mesh, net, start, WEFT, i, jb - sj, sj, weft)
-                return _step(mesh, detours, net, start, WEFT, i, jb, sj, i, j, dx, dy, weft, slack, report)
+                return straight_on(mesh, detours, net, start, WEFT, i, jb, sj, i, j, dx, dy, weft, slack, report)
         elif status[ia, jb] <= OFF_MOULD:
             _, _, gx, gy = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
             c = math.cos(start.sector[half])
             s = side * math.sin(start.sector[half])
-            return _step(
+            return straight_on(
                 mesh, detours, net, start, WEFT, i, jb, sj, i, j, c * gx - s * gy, s * gx + c * gy, weft, slack, report
             )
     if (has_a or status[ia, j] == OUTSIDE) and (has_b or status[i, jb] == OUTSIDE):
@@ -343,7 +343,7 @@ def _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, 
 
 
 @njit(cache=True, error_model="numpy")
-def _step(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, report):
+def straight_on(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, report):
     """Place (i2, j2) one edge straight on from (i, j).
 
     Returns its status, or DOUBTED and the family of the edge that may have a shorter way.
