@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, keep_edge
 from meshdrape.kernels.walk import WALKED, turn_into, walk
 
@@ -12,7 +11,7 @@ MAX_TURNS = 40
 FIRST_AIMS = (0.0, 0.02, -0.02, 0.1, -0.1, 0.3, -0.3)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _gap(mesh, face, x, y, px, py, pz):
     """From a place in a face to a point in space: its two coordinates in the face's frame, and the distance."""
     f = mesh.frame[face]
@@ -29,7 +28,7 @@ def _gap(mesh, face, x, y, px, py, pz):
     return u, v, math.sqrt(u * u + v * v + w * w)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def aim(mesh, face, x, y, head_face, head_x, head_y, length, enough):
     """The straight path of a given length that ends nearest to a node.
 
@@ -65,7 +64,7 @@ def aim(mesh, face, x, y, head_face, head_x, head_y, length, enough):
     return best, math.cos(best_at), math.sin(best_at), ex, ey
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def aim_edges(mesh, net, start, i_first, i_last, warp, weft, enough, gap):
     """Give every edge off the generators its direction, where a straight path of one spacing joins its ends.
 

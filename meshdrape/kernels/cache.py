@@ -1,12 +1,77 @@
-"""Whether the compiled kernels are at hand."""
+"""How a kernel is compiled, and where the machine code is kept between runs.
 
+numba keeps a compiled function as fresh as the file it stands in, and does not notice that a function it calls, which
+is compiled into it, has changed in another file: after an upgrade it would compute as before. The folder of the cache
+is therefore named by the text of all kernels.
+"""
+
+import hashlib
+import os
+import shutil
+import tempfile
+from functools import cache
 from pathlib import Path
+
+import numba
+
+HERE = Path(__file__).parent
+PREFIX = "kernels-"
+
+
+def kernel(function=None, *, inline="never", nogil=False):
+    """A function for arrays, compiled when it is first called and kept for the next run."""
+    if function is None:
+        return lambda function: kernel(function, inline=inline, nogil=nogil)
+    place, told = folder(), numba.config.CACHE_DIR
+    try:
+        numba.config.CACHE_DIR = str(place or told)
+        return numba.njit(cache=place is not None, error_model="numpy", inline=inline, nogil=nogil)(function)
+    finally:
+        numba.config.CACHE_DIR = told
 
 
 def is_compiled() -> bool:
-    """Whether an earlier run left its compiled kernels in numba's cache, beside the sources or where numba was told."""
-    import numba
+    """Whether an earlier run left the compiled form of just these kernels."""
+    place = folder()
+    return place is not None and next(place.rglob("sweep.sweep-*.nbc"), None) is not None
 
+
+@cache
+def folder() -> Path | None:
+    """Where compiled kernels are kept: where numba was told, else beside the sources, else among the user's caches.
+
+    None where nothing can be written: the kernels are then compiled for each run.
+    """
     told = numba.config.CACHE_DIR
-    folders = [Path(told)] if told else [Path(__file__).parent / "__pycache__"]
-    return any(next(folder.rglob("sweep.sweep-*.nbc"), None) is not None for folder in folders)
+    users = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "meshdrape"
+    name = PREFIX + digest()
+    for place in [Path(told)] if told else [HERE / "__pycache__", users]:
+        if _can_write(place / name):
+            if not told:
+                _forget_others(place, name)
+            return place / name
+    return None
+
+
+def digest() -> str:
+    """(16,) hexadecimal digits that change with a letter of any kernel."""
+    text = hashlib.sha256()
+    for path in sorted(HERE.glob("*.py")):
+        text.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return text.hexdigest()[:16]
+
+
+def _can_write(place: Path) -> bool:
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=place).close()
+    except OSError:
+        return False
+    return True
+
+
+def _forget_others(place: Path, name: str) -> None:
+    """Remove what was compiled from kernels that are no more; a process that still runs them has them in memory."""
+    for other in place.glob(PREFIX + "*"):
+        if other.name != name:
+            shutil.rmtree(other, ignore_errors=True)

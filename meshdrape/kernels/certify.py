@@ -1,7 +1,6 @@
 """Whether a straight path is sure to be the shortest: no convex vertex beside it offers a shorter way round."""
 
-from numba import njit
-
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.walk import MAX_CROSSINGS
 
 # A path over which the surface turns by more than about 100 degrees may lie on a tube, with another way round the back.
@@ -9,13 +8,13 @@ from meshdrape.kernels.walk import MAX_CROSSINGS
 TURNED_OVER = -0.17
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@kernel(inline="always")
 def turned_over(normal, f, g):
     """Whether the normals of two faces are so far apart that a tube's back may be the shorter way."""
     return normal[f, 0] * normal[g, 0] + normal[f, 1] * normal[g, 1] + normal[f, 2] * normal[g, 2] < TURNED_OVER
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _round_corner(detour, cx, cy, x, y, tx, ty):
     """Whether the way from (x, y) to (tx, ty) round the far side of the corner (cx, cy) may be the shorter."""
     # the angle at the vertex between both ends, on the path's side, exceeds pi less what `detour` is the tangent of
@@ -30,7 +29,7 @@ def _round_corner(detour, cx, cy, x, y, tx, ty):
     return dot < 0.0 or cross > -detour * dot
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def second_route(plane, neighbour, detour, face, x, y, dx, dy, length):
     """Whether a straight path may have a shorter second route round a convex vertex.
 

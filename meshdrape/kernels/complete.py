@@ -6,8 +6,7 @@ back: there a node is placed from any two neighbours that close a cell, in any o
 
 import math
 
-from numba import njit
-
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, place
 from meshdrape.kernels.shear import past_stop
@@ -24,7 +23,7 @@ TURNS = 8
 NOWHERE = -1
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def has_bays(status):
     """Whether a node on the mould has a neighbour that no quadrant reached for want of parents."""
     n_warp, n_weft = status.shape
@@ -43,12 +42,12 @@ def has_bays(status):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _has(status, i, j):
     return 0 <= i < status.shape[0] and 0 <= j < status.shape[1] and status[i, j] <= OFF_MOULD
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _leads_from_mould(status, i, j, back_i, back_j):
     """Whether the fibre through (i, j) left the mould no more than two nodes before."""
     for _ in range(3):
@@ -61,7 +60,7 @@ def _leads_from_mould(status, i, j, back_i, back_j):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def join(mesh, net, start, family, i, j, step, dx, dy, length):
     """Keep the edge from (i, j) to its neighbour, if a straight path near the given direction is one spacing long."""
     i2 = i + step if family == WARP else i
@@ -109,7 +108,7 @@ def join(mesh, net, start, family, i, j, step, dx, dy, length):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def joins_all(mesh, net, start, si, sj, i, j, warp, weft):
     """Whether a node just placed from (i - si, j) or (i, j - sj) is one spacing from every other neighbour placed.
 
@@ -139,7 +138,7 @@ def joins_all(mesh, net, start, si, sj, i, j, warp, weft):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def complete(
     mesh,
     detours,

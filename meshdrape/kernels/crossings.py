@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_key
 from meshdrape.kernels.generator import VERTEX_AIM, VERTEX_TOUCH, corner_angle, corner_place, turn_about_vertex
 from meshdrape.kernels.walk import MAX_CROSSINGS
@@ -17,7 +17,7 @@ BENT_AIM = 1e-5
 MOST_PASSED = 10_000
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _sides(family, i, j, forward):
     """Cells to the left and to the right of a net edge as it is walked: (left i, left j, right i, right j)."""
     if family == WARP:
@@ -29,7 +29,7 @@ def _sides(family, i, j, forward):
     return right_i, right_j, left_i, left_j
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _note(mesh, face, k, t, sides, nearest, cell):
     """Keep a crossing of edge k of a face, outwards, at the share t of its length, where it is its ends' nearest."""
     # walking out, corner k + 1 lies to the left
@@ -45,7 +45,7 @@ def _note(mesh, face, k, t, sides, nearest, cell):
         cell[other, 1] = sides[1]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _left_angle(mesh, face, k, bx, by, out_face, out_k, ox, oy):
     """Angle at a vertex on the left of a path: counter-clockwise from the way out to the way back (bx, by)."""
     sector, ex, ey = corner_angle(mesh, out_face, out_k)
@@ -68,7 +68,7 @@ def _left_angle(mesh, face, k, bx, by, out_face, out_k, ox, oy):
     return math.nan
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _follow(mesh, face, x, y, dx, dy, length, head_face, aimed, bent, sides, nearest, cell, passed):
     """Walk one net edge and note what it crosses.
 
@@ -177,7 +177,7 @@ def _follow(mesh, face, x, y, dx, dy, length, head_face, aimed, bent, sides, nea
     return n_passed, face, -1, -dx, -dy
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def cross(mesh, net, start, warp, weft, nearest, cell, mark, mark_share):
     """Follow every edge of a net over the mesh.
 

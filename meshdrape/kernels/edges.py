@@ -1,8 +1,8 @@
 """Edges between nodes: the direction kept of each, and both ends made from it."""
 
 import numpy as np
-from numba import njit
 
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.walk import turn_into, walk
 
 OFF_MOULD = 1
@@ -11,13 +11,13 @@ WARP = 0
 WEFT = 1
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def edge_key(net, family, i, j):
     """Number of the edge kept at [i, j] of its family."""
     return 2 * (i * net.status.shape[1] + j) + family
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def edge_ends(mesh, net, start, family, i, j, step, length):
     """Direction of the edge from (i, j) to its neighbour `step` (+1 or -1) on, at both ends, each in its node's frame.
 
@@ -86,7 +86,7 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
     return -ex, -ey, -sx, -sy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
     """Keep the edge from (i, j) to its neighbour: (dx, dy) leaves (i, j), (ex, ey) arrives at the neighbour."""
     if family == WARP:

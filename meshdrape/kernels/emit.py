@@ -2,15 +2,14 @@
 
 import math
 
-from numba import njit
-
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends
 from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould
 
 OUTSIDE = 2
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def positions(mesh, net, i_first, out):
     """World positions of the rows from i_first on, out (rows, n_weft, 3); NaN where there is no node."""
     for a in range(out.shape[0]):
@@ -28,7 +27,7 @@ def positions(mesh, net, i_first, out):
                 out[a, j, k] = frame[k] + x * frame[3 + k] + y * frame[6 + k]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def node_tangent(mesh, net, start, family, i, j, spacing):
     """Unit tangent of a fibre at a node, in the frame of its face: the mean of the edges before and after it.
 
@@ -60,7 +59,7 @@ def node_tangent(mesh, net, start, family, i, j, spacing):
     return dx / size, dy / size
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
     """Unit tangents (rows, n_weft, 3) of the fibres at the nodes of the rows from i_first on; NaN without a node."""
     n_warp, n_weft = net.status.shape
@@ -107,14 +106,14 @@ def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
                 weft_out[a, j, k] = qx * frame[3 + k] + qy * frame[6 + k]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def border_status(mesh, face, xy, slack, out):
     """Status of places (n,), (n, 2): 0 on the mould, 1 on its extension."""
     for n in range(len(face)):
         out[n] = OFF_MOULD if off_mould(mesh, face[n], xy[n, 0], xy[n, 1], slack) else 0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _crosses_mould(mesh, face, x, y, dx, dy, length):
     """Whether the straight path from (x, y) touches a face of the mould."""
     entered = -1
@@ -148,7 +147,7 @@ def _crosses_mould(mesh, face, x, y, dx, dy, length):
     return False
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def touching_cells(mesh, net, start, i_first, warp, weft, out):
     """Whether each whole cell touches the mould, by a corner or an edge; rows from i_first, out (rows, n_weft - 1)."""
     _touching_by_corner(net.status, i_first, out)
@@ -168,7 +167,7 @@ def touching_cells(mesh, net, start, i_first, warp, weft, out):
                 out[a, j] = _touches_by_edge(mesh, net, start, i, j, warp, weft)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def _touching_by_corner(status, i_first, out):
     """Whether each cell is whole and has a corner on the mould: on its own, the loop runs many cells at a time."""
     for a in range(out.shape[0]):
@@ -180,7 +179,7 @@ def _touching_by_corner(status, i_first, out):
             out[a, j] = (high <= OFF_MOULD) & (low == 0)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _touches_by_edge(mesh, net, start, i, j, warp, weft):
     """Whether an edge of a cell off the mould crosses a corner of it."""
     for step in range(4):
@@ -197,7 +196,7 @@ def _touches_by_edge(mesh, net, start, i, j, warp, weft):
     return False
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def trim(net, touching, hem):
     """Take back the nodes off the mould that no cell needs: they become OUTSIDE.
 

@@ -3,10 +3,11 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from meshdrape.kernels.cache import kernel
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def point_triangle_distance(px, py, pz, frame, corner):
     """Distance in space from a point to a triangle given by its frame (9,) and corners (3,)."""
     rx = px - frame[0]
@@ -39,7 +40,7 @@ def point_triangle_distance(px, py, pz, frame, corner):
     return math.sqrt(height2 if inside else height2 + best)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def flood(mesh, first_face, a, b, bound):
     """Faces reached from `first_face` over edges for which |x - a| + |x - b| <= bound holds somewhere.
 

@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.walk import LEFT_SURFACE, MAX_CROSSINGS, WALKED
 
 # Further outcome of a trace: its turn at the crease leads back over the crease.
@@ -20,7 +19,7 @@ VERTEX_TOUCH = 1e-9
 VERTEX_AIM = 1e-4
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def corner_place(mesh, face, k):
     """Corner k of a face in the face's frame."""
     if k == 0:
@@ -30,7 +29,7 @@ def corner_place(mesh, face, k):
     return mesh.corner[face, 1], mesh.corner[face, 2]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def corner_angle(mesh, face, k):
     """Angle at corner k and the direction of the edge from corner k to k + 1."""
     x, y = corner_place(mesh, face, k)
@@ -44,7 +43,7 @@ def corner_angle(mesh, face, k):
     return math.atan2(ax * by - ay * bx, ax * bx + ay * by), ax / size, ay / size
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def turn_about_vertex(mesh, face, k, dx, dy, angle):
     """Direction at corner k of `face`, turned counter-clockwise about the vertex by `angle` across unfolded faces.
 
@@ -76,7 +75,7 @@ def turn_about_vertex(mesh, face, k, dx, dy, angle):
     return -1, k, dx, dy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def crease_gap(mesh, crease, face, k, dx, dy):
     """Angles to the creases at corner k of `face` on both sides of the straight way out of a fibre that came in.
 
@@ -113,7 +112,7 @@ def crease_gap(mesh, crease, face, k, dx, dy):
     return low, high
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def trace(
     mesh,
     crease,

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT
 from meshdrape.kernels.emit import node_tangent
 
@@ -13,7 +13,7 @@ MAX_STEPS = 80
 SAME_PLANE = math.cos(math.radians(20.0))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def first_nodes(mesh, net, out):
     """A node on each face, out (m, 2): the first one, else the nearest neighbouring face's; -1 where none is near."""
     n_warp, n_weft = net.status.shape
@@ -47,7 +47,7 @@ def first_nodes(mesh, net, out):
                     tail += 1
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _one_plane(mesh, f, g):
     """Whether two faces are turned against each other by less than the angle of a crease."""
     a = mesh.frame[f]
@@ -60,14 +60,14 @@ def _one_plane(mesh, f, g):
     return dot > SAME_PLANE
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@kernel(inline="always")
 def _node(mesh, net, i, j, out):
     frame = mesh.frame[net.face[i, j]]
     for k in range(3):
         out[k] = frame[k] + net.xy[i, j, 0] * frame[3 + k] + net.xy[i, j, 1] * frame[6 + k]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _whole(net, i, j):
     n_warp, n_weft = net.status.shape
     if i < 0 or j < 0 or i >= n_warp - 1 or j >= n_weft - 1:
@@ -80,7 +80,7 @@ def _whole(net, i, j):
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _faces_alike(mesh, net, i, j, normal):
     """Whether a corner of the cell lies on a face turned to the same side as a normal."""
     for corner in range(4):
@@ -93,7 +93,7 @@ def _faces_alike(mesh, net, i, j, normal):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _solve(px, py, pz, n, a, u, v):
     """Coordinates (alpha, beta) of a point from corner a along u and v, seen along the unit normal n."""
     rx = px - a[0]
@@ -108,7 +108,7 @@ def _solve(px, py, pz, n, a, u, v):
     return rv / uv, ur / uv
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first, cell, warp_out, weft_out):
     """Cell over each point and its fibres there.
 
@@ -267,7 +267,7 @@ def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first
                 warp_out[q, 2] = sz / size
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def cells_by_face(net, shear, touching, locking, initial_angle, largest, area, over):
     """Largest |shear|, area and area over the lock per face of the mould, of the cells whose first corner lies there.
 

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD
 
 MET_ITSELF = 4
@@ -14,7 +14,7 @@ THICKNESS = 0.25
 WINDOW = 8.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def spread_on_faces(net, window, diameter, spacing):
     """Whether nodes with far-apart indices lie on one face, as they do where a sheet comes round again.
 
@@ -41,12 +41,12 @@ def spread_on_faces(net, window, diameter, spacing):
     return False
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@kernel(inline="always")
 def _cross2(ax, ay, bx, by):
     return ax * by - ay * bx
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _in_cell(position, status, ci, cj, face_frame, px, py, pz, thickness):
     """Whether a point lies over the whole cell (ci, cj), seen along the normal of a frame."""
     n_warp, n_weft = status.shape
@@ -77,12 +77,12 @@ def _in_cell(position, status, ci, cj, face_frame, px, py, pz, thickness):
     return True
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@kernel(inline="always")
 def _bucket(x, y, z, size):
     return (x * 73856093 ^ y * 19349663 ^ z * 83492791) & (size - 1)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def stop_where_met(mesh, net, index, position, order, radius):
     """Take back, in a fixed order, each node that lies on a cell kept before it, and what depends on it.
 

@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.certify import second_route, turned_over
 from meshdrape.kernels.walk import WALKED, turn_into, walk
 
@@ -23,7 +22,7 @@ DAMPED_FROM = 24
 FOLD_SINE = math.sin(math.radians(1.0))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def place(
     plane, neighbour, frame, vertex, detour, normal, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance
 ):
@@ -140,7 +139,7 @@ def place(
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _touch(vertex, f, g):
     """Whether two faces share a vertex."""
     for k in range(3):
@@ -150,7 +149,7 @@ def _touch(vertex, f, g):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _gap_in_space(frame, f1, x1, y1, px, py, w1, f2, x2, y2, qx, qy, w2):
     """Squared gap between two ends on faces that share no edge, and the two small turns that close it."""
     a = frame[f1]

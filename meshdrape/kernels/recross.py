@@ -1,14 +1,15 @@
 """Fibres that cross from one side of a crease to the other and come back."""
 
 import numpy as np
-from numba import njit
+
+from meshdrape.kernels.cache import kernel
 
 PLACED = 0
 # Candidates told of each fibre and half.
 MOST = 4
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def returning_wefts(face, status, region, returns, j0, sense, found):
     """Where weft fibres, followed from column j0 in one sense, come back to a region over the crease they left it by.
 
@@ -54,7 +55,7 @@ def returning_wefts(face, status, region, returns, j0, sense, found):
     return n
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def returning_warps(face, status, region, returns, i0, sense, found):
     """The same of the warp fibres, from row i0: j, the i of the first node beyond, the i of the first one back."""
     n_warp, n_weft = status.shape

@@ -3,17 +3,17 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@kernel(inline="always")
 def _angle(px, py, qx, qy):
     return math.atan2(px * qy - py * qx, px * qx + py * qy)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _mean_corner(start, i, j, ax, ay, bx, by, cx, cy, dx, dy, ex, ey, fx, fy, gx, gy, hx, hy):
     """Mean angle from +warp to +weft over the corners of the cell (i, j)-(i + 1, j + 1).
 
@@ -39,7 +39,7 @@ def _mean_corner(start, i, j, ax, ay, bx, by, cx, cy, dx, dy, ex, ey, fx, fy, gx
     return 0.25 * total
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def shear_of(mesh, net, start, i, j, initial_angle, warp, weft):
     """Signed shear of one cell (i, j)-(i + 1, j + 1) that has all its corners, rad, as `cell_shear` has it."""
     ax, ay, bx, by = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
@@ -49,14 +49,14 @@ def shear_of(mesh, net, start, i, j, initial_angle, warp, weft):
     return initial_angle - _mean_corner(start, i, j, ax, ay, bx, by, cx, cy, dx, dy, ex, ey, fx, fy, gx, gy, hx, hy)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def past_stop(mesh, net, start, si, sj, i, j, initial_angle, stop_at, warp, weft):
     """Whether the cell of a node and its parents, one step back in the sense (si, sj), is sheared too far."""
     shear = shear_of(mesh, net, start, min(i, i - si), min(j, j - sj), initial_angle, warp, weft)
     return abs(shear) > stop_at
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
     """Signed shear of the cells (i, j)-(i + 1, j + 1) of the rows from i_first on, out (rows, n_weft - 1), rad.
 

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.certify import second_route, turned_over
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, FOLD_SINE, NOT_CONVERGED, OUTSIDE, PLACED, place
@@ -22,7 +22,7 @@ FREE_WARP = 2
 FREE_WEFT = 3
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel(nogil=True)
 def sweep(
     mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count,
     warp, weft, initial_angle, stop_at, tolerance, slack, every, report,
@@ -278,7 +278,7 @@ def sweep(
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _half_fibre(si, sj):
     """Half-fibre that bounds a quadrant clockwise; they are numbered counter-clockwise from +warp."""
     if sj > 0:
@@ -286,7 +286,7 @@ def _half_fibre(si, sj):
     return 2 if si < 0 else 3
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _near_mould(status, i, j, back_i, back_j, i0, j0):
     """Whether the fibre left the mould no more than two nodes before (i, j), on this side of the generators."""
     for _ in range(3):
@@ -302,7 +302,7 @@ def _near_mould(status, i, j, back_i, back_j, i0, j0):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, slack, report):
     """Status of a node that lacks a parent, placed straight on from the other one where the sheet hangs free."""
     status = net.status
@@ -342,7 +342,7 @@ def _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, 
     return NOT_REACHED
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def straight_on(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, length, slack, report):
     """Place (i2, j2) one edge straight on from (i, j).
 

@@ -2,7 +2,7 @@
 
 import math
 
-from numba import njit
+from meshdrape.kernels.cache import kernel
 
 WALKED = 0
 LEFT_SURFACE = 1
@@ -11,7 +11,7 @@ LEFT_SURFACE = 1
 MAX_CROSSINGS = 100_000
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def walk(plane, neighbour, face, x, y, dx, dy, length):
     """Walk straight on for `length` from (x, y) in `face`, in the unit direction (dx, dy).
 
@@ -92,7 +92,7 @@ def walk(plane, neighbour, face, x, y, dx, dy, length):
     return LEFT_SURFACE, face, x, y, dx, dy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def turn_into(plane, neighbour, frame, source, dx, dy, target):
     """Direction (dx, dy) of face `source` in the frame of face `target`, which holds the same point.
 
@@ -118,7 +118,7 @@ def turn_into(plane, neighbour, frame, source, dx, dy, target):
     return ex / size, ey / size
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def off_mould(mesh, face, x, y, slack):
     """Whether (x, y) in `face` lies on the extension, farther than `slack` from the mould itself."""
     rim = mesh.rim[face]
