@@ -9,18 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import MouldError
-from meshdrape.kernels.tables import Detours, Unfolding
+from meshdrape.kernels.tables import Unfolding
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-# A way round a vertex of defect d is shorter by d^2 / 32 of the path at most: below this defect, rad, by nothing that
-# counts.
-LEAST_DETOUR = 1e-5
-# Vertices are suspected of a shorter way round from this many times as far off as they can offer one.
-DETOUR_MARGIN = 1.5
-# Above this angle defect, rad, a vertex counts for its neighbours too.
-SHARP_VERTEX = 0.02
 
 
 @dataclass(frozen=True)
@@ -256,22 +248,6 @@ class Surface:
     def unfolding(self) -> Unfolding:
         """The tables the kernels walk on."""
         return _unfold(self)
-
-    @cached_property
-    def detours(self) -> Detours:
-        """Where straight paths may not be the shortest."""
-        defect = np.where(self.border_vertex, 0.0, np.maximum(self.vertex_defect, 0.0))
-        # sharp vertices side by side may be gone round together
-        sharp = np.where(defect > SHARP_VERTEX, defect, 0.0)
-        face, k = np.nonzero(
-            (self.face_neighbour < 0) | (self.face_neighbour > np.arange(3 * len(self.faces)).reshape(-1, 3))
-        )
-        tail, head = self.faces[face, k], self.faces[face, (k + 1) % 3]
-        beside = np.bincount(tail, sharp[head], len(defect)) + np.bincount(head, sharp[tail], len(defect))
-        together = defect + np.where(sharp > 0, beside, 0.0)
-        half = np.where(defect > LEAST_DETOUR, np.minimum(0.5 * DETOUR_MARGIN * together, 3.0), 0.0)[self.faces]
-        wary = np.asarray((self.corner_angle > np.pi - half).any(axis=1))
-        return Detours(np.tan(half), wary, self.face_normal)
 
     def closest_point(self, position: ArrayLike) -> tuple[SurfacePoint, float]:
         """The point of the surface nearest to `position` (3,), and its distance, mm. O(n_faces)."""

@@ -1,6 +1,9 @@
-"""Whether a straight path is sure to be the shortest: no convex vertex beside it offers a shorter way round."""
+"""Whether a straight path is sure to be the shortest: nothing beside it offers a shorter way round."""
+
+import math
 
 from meshdrape.kernels.cache import kernel
+from meshdrape.kernels.tables import KEPT_OUT
 from meshdrape.kernels.walk import MAX_CROSSINGS
 
 # A path over which the surface turns by more than about 100 degrees may lie on a tube, with another way round the back.
@@ -15,59 +18,84 @@ def turned_over(normal, f, g):
 
 
 @kernel
-def _round_corner(detour, cx, cy, x, y, tx, ty):
-    """Whether the way from (x, y) to (tx, ty) round the far side of the corner (cx, cy) may be the shorter."""
-    # the angle at the vertex between both ends, on the path's side, exceeds pi less what `detour` is the tangent of
+def _doubt(plane, detour, face, k, x, y, dx, dy, tx, ty):
+    """How near corner k of a face comes to offering a shorter way from (x, y) to (tx, ty), ahead along (dx, dy).
+
+    The part of its turn that it would have to give, positive if it lies on the left, negative on the right; infinite
+    if it may offer one by itself.
+    """
+    d = detour[face, k]
+    if d == 0.0:
+        return 0.0
+    cx = 0.0
+    cy = 0.0
+    if k == 1:
+        cx = plane[face, 21]
+    elif k == 2:
+        cx = plane[face, 22]
+        cy = plane[face, 23]
     ax = x - cx
     ay = y - cy
     bx = tx - cx
     by = ty - cy
+    if d >= KEPT_OUT:
+        # whether the path comes within a radius
+        before = ax * dx + ay * dy
+        beyond = bx * dx + by * dy
+        if before > 0.0:
+            away2 = ax * ax + ay * ay
+        elif beyond < 0.0:
+            away2 = bx * bx + by * by
+        else:
+            away2 = (ax * dy - ay * dx) ** 2
+        return math.inf if away2 < (d - KEPT_OUT) ** 2 else 0.0
+    # the angle at the vertex between both ends, on the path's side, against pi less what d is the tangent of
     dot = ax * bx + ay * by
-    cross = abs(ax * by - ay * bx)
-    if detour > 0.0:
-        return cross < -detour * dot
-    return dot < 0.0 or cross > -detour * dot
+    cross = ax * by - ay * bx
+    if d > 0.0:
+        return -d * dot / cross if dot < 0.0 else 0.0
+    return math.inf if dot < 0.0 or abs(cross) > -d * dot else 0.0
 
 
 @kernel
-def second_route(plane, neighbour, detour, face, x, y, dx, dy, length):
-    """Whether a straight path may have a shorter second route round a convex vertex.
+def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
+    """Whether a straight path may have a shorter second route: round convex vertices, or over the back of a tube.
 
     Round a vertex of angle defect d the two ways between a path's ends are equally long where the ends are seen from
-    the vertex at an angle of pi - d / 2 on either side. For small defects that is a lateral distance of
-    d s r / (2 (s + r)), s and r being the path's lengths before and after the vertex. True is no proof: it is for
-    exact distances to decide. False is one, but for vertices in no face that the path crosses.
+    the vertex at an angle of pi - d / 2 on either side. For small defects that is a lateral distance
+    y = d s r / (2 (s + r)), s and r being the path's lengths before and after the vertex. A way round several
+    vertices of one side sags by w(s) for a length of half the integral of w'^2, and gains d (w - y) at each; by the
+    inequality of Cauchy and Schwarz none is shorter while d s r / (2 y (s + r)) adds up to less than one.
+
+    True is no proof: it is for exact distances to decide.
 
     Parameters
     ----------
     plane, neighbour
         Of `Unfolding`, as `walk` has them.
-    detour : (m, 3)
-        `Detours.tangent`.
+    detour, normal : (m, 3)
+        Of `Detours`.
     """
     tx = x + length * dx
     ty = y + length * dy
+    left = 0.0
+    right = 0.0
     for k in range(3):
-        d = detour[face, k]
-        if d != 0.0:
-            cx = 0.0
-            cy = 0.0
-            if k == 1:
-                cx = plane[face, 21]
-            elif k == 2:
-                cx = plane[face, 22]
-                cy = plane[face, 23]
-            if _round_corner(d, cx, cy, x, y, tx, ty):
-                return True
+        doubt = _doubt(plane, detour, face, k, x, y, dx, dy, tx, ty)
+        left += max(doubt, 0.0)
+        right -= min(doubt, 0.0)
+    tail = face
     entered = -1
     for _ in range(MAX_CROSSINGS):
         # over the edge that the end lies beyond and that the line itself crosses
         exit_edge = -1
+        ended = True
         for k in range(3):
             if k == entered:
                 continue
             if plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty - plane[face, 3 * k + 2] >= 0.0:
                 continue
+            ended = False
             ux = 0.0
             uy = 0.0
             vx = plane[face, 21]
@@ -84,11 +112,10 @@ def second_route(plane, neighbour, detour, face, x, y, dx, dy, length):
             if dx * (uy - y) - dy * (ux - x) <= 0.0 and dx * (vy - y) - dy * (vx - x) >= 0.0:
                 exit_edge = k
                 break
-        if exit_edge < 0:
-            return False
-        code = neighbour[face, exit_edge]
+        code = neighbour[face, exit_edge] if exit_edge >= 0 else -1
         if code < 0:
-            return False
+            # lost at a corner it runs through, it may have missed what lies beyond
+            return left > 1.0 or right > 1.0 or not (ended or exit_edge >= 0)
         at = 9 + 4 * exit_edge
         c = plane[face, at]
         s = plane[face, at + 1]
@@ -98,16 +125,9 @@ def second_route(plane, neighbour, detour, face, x, y, dx, dy, length):
         face = code // 3
         entered = code - 3 * face
         # the one corner that is new
-        k = (entered + 2) % 3
-        d = detour[face, k]
-        if d != 0.0:
-            cx = 0.0
-            cy = 0.0
-            if k == 1:
-                cx = plane[face, 21]
-            elif k == 2:
-                cx = plane[face, 22]
-                cy = plane[face, 23]
-            if _round_corner(d, cx, cy, x, y, tx, ty):
-                return True
-    return False
+        doubt = _doubt(plane, detour, face, (entered + 2) % 3, x, y, dx, dy, tx, ty)
+        left += max(doubt, 0.0)
+        right -= min(doubt, 0.0)
+        if turned_over(normal, tail, face):
+            return True
+    return left > 1.0 or right > 1.0

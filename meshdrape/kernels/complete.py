@@ -202,7 +202,7 @@ def complete(
                 ex /= size
                 ey /= size
                 code, f, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations = place(
-                    mesh.plane, mesh.neighbour, mesh.frame, mesh.vertex, detours.tangent, detours.normal,
+                    mesh.plane, mesh.neighbour, mesh.frame, mesh.vertex, detours.corner, detours.normal,
                     net.face[ia, j], net.xy[ia, j, 0], net.xy[ia, j, 1], c * gx - s * gy, s * gx + c * gy, warp,
                     net.face[i, jb], net.xy[i, jb, 0], net.xy[i, jb, 1], c * ex + s * ey, c * ey - s * ex, weft,
                     side, tolerance,

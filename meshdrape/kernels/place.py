@@ -3,14 +3,14 @@
 import math
 
 from meshdrape.kernels.cache import kernel
-from meshdrape.kernels.certify import second_route, turned_over
+from meshdrape.kernels.certify import second_route
 from meshdrape.kernels.walk import WALKED, turn_into, walk
 
 PLACED = 0
 OUTSIDE = 2
 FOLDED = 3
 NOT_CONVERGED = 7
-# Placed, but one of the two paths may have a shorter way round a convex vertex.
+# Placed, but one of the two paths may have a shorter way round a convex vertex, or over a back.
 DOUBTED = 100
 
 MAX_ITERATIONS = 40
@@ -79,11 +79,8 @@ def place(
             if (px * qy - py * qx) * side < FOLD_SINE:
                 return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             code = PLACED
-            if (
-                second_route(plane, neighbour, detour, fa, xa, ya, ux, uy, wa)
-                or second_route(plane, neighbour, detour, fb, xb, yb, vx, vy, wb)
-                or turned_over(normal, fa, f1)
-                or turned_over(normal, fb, f1)
+            if second_route(plane, neighbour, detour, normal, fa, xa, ya, ux, uy, wa) or second_route(
+                plane, neighbour, detour, normal, fb, xb, yb, vx, vy, wb
             ):
                 code = DOUBTED
             return code, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from meshdrape.kernels.cache import kernel
-from meshdrape.kernels.certify import second_route, turned_over
+from meshdrape.kernels.certify import second_route
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, FOLD_SINE, NOT_CONVERGED, OUTSIDE, PLACED, place
 from meshdrape.kernels.shear import past_stop
@@ -67,7 +67,7 @@ def sweep(
     frame = mesh.frame
     vertex = mesh.vertex
     rim = mesh.rim
-    detour = detours.tangent
+    detour = detours.corner
     wary = detours.wary
     normal = detours.normal
     face = net.face
@@ -354,7 +354,7 @@ def straight_on(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, l
     tail = net.face[i, j]
     x = net.xy[i, j, 0]
     y = net.xy[i, j, 1]
-    doubted = second_route(mesh.plane, mesh.neighbour, detours.tangent, tail, x, y, dx, dy, length)
+    doubted = second_route(mesh.plane, mesh.neighbour, detours.corner, detours.normal, tail, x, y, dx, dy, length)
     code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, tail, x, y, dx, dy, length)
     if code != WALKED:
         return OUTSIDE
@@ -364,7 +364,7 @@ def straight_on(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, l
     net.xy[i2, j2, 0] = x
     net.xy[i2, j2, 1] = y
     keep_edge(net, start, family, i, j, step, dx, dy, ex, ey)
-    if doubted or turned_over(detours.normal, tail, f):
+    if doubted:
         return DOUBTED + family
     report[0] += 1
     return OFF_MOULD if off_mould(mesh, f, x, y, slack) else PLACED

@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
+# Beyond all tangents, so that a number above it means a radius; a radius is then good to 1e-7 mm.
+KEPT_OUT = 1e9
+
 
 class Unfolding(NamedTuple):
     """A triangle mesh as planes that can be unfolded one into the next.
@@ -38,13 +41,13 @@ class Unfolding(NamedTuple):
 
 
 class Detours(NamedTuple):
-    """Where straight paths may have a shorter way round a convex vertex: a table of its own, for few loops ask."""
+    """Where straight paths may have a shorter way round: a table of its own, for few loops ask."""
 
-    tangent: FloatArray
-    """(m, 3) per corner of a face, the tangent of half the angle defect of its vertex, with a margin; 0 where the
-    vertex is not convex."""
+    corner: FloatArray
+    """(m, 3) of the vertex at each corner: 0 where it offers no shorter way; else the tangent of half its angle defect,
+    with a margin; or KEPT_OUT and the radius, mm, within which a path may have a shorter way round it and others."""
     wary: NDArray[np.bool_]
-    """(m,) whether even a path within the face may have a shorter way round one of its corners."""
+    """(m,) whether even a path within the face may have a shorter way."""
     normal: FloatArray
     """(m, 3) unit normals."""
 

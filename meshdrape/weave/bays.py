@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshdrape.geodesic.detours import detours
 from meshdrape.kernels.complete import complete, joins_all
 from meshdrape.kernels.tables import Lattice
 from meshdrape.surface import Surface
@@ -30,6 +31,7 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
     tolerance, slack = gap_tolerance(surface, fabric), border_slack(fabric)
     spacing = (fabric.warp_spacing, fabric.weft_spacing)
     mesh = surface.unfolding
+    table = detours(surface, max(fabric.warp_spacing, fabric.weft_spacing))
     report = np.zeros(5, dtype=np.int64)
     refused: list[tuple[int, int]] = []
     for _ in range(MOST_PASSES):
@@ -44,7 +46,7 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
                     first = (rows[0] if sense[0] > 0 else rows[1] - 1, columns[0] if sense[1] > 0 else columns[1] - 1)
                     count = (rows[1] - rows[0], columns[1] - columns[0])
                     while not complete(
-                        mesh, surface.detours, lattice, judge.start, *sense, first[0], count[0], first[1], count[1],
+                        mesh, table, lattice, judge.start, *sense, first[0], count[0], first[1], count[1],
                         *spacing, fabric.initial_angle, judge.stop_at, tolerance, slack, report,
                     ):  # fmt: skip
                         i, j, why = (int(v) for v in report[2:])

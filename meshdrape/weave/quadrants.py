@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshdrape.geodesic.detours import detours
 from meshdrape.kernels.sweep import sweep
 from meshdrape.kernels.tables import Lattice
 from meshdrape.surface import Surface
@@ -60,6 +61,7 @@ def fill(
     tolerance = gap_tolerance(surface, fabric)
     slack = border_slack(fabric)
     mesh = surface.unfolding
+    table = detours(surface, max(fabric.warp_spacing, fabric.weft_spacing))
 
     def run(tile: _Tile) -> int:
         span_i, span_j = spans[tile.si][0], spans[tile.sj][1]
@@ -68,7 +70,7 @@ def fill(
         first_j = j0 + tile.sj * (1 + tile.b * TILE)
         count_i, count_j = min(TILE, span_i - tile.a * TILE), min(TILE, span_j - tile.b * TILE)
         while not sweep(
-            mesh, surface.detours, lattice, judge.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
+            mesh, table, lattice, judge.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
             fabric.warp_spacing, fabric.weft_spacing, fabric.initial_angle, judge.stop_at,
             tolerance, slack, settle_every, report,
         ):  # fmt: skip
