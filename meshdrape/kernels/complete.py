@@ -8,7 +8,7 @@ import math
 
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
-from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, place
+from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, folds_before, place
 from meshdrape.kernels.shear import past_stop
 from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, LOST, STOPPED, UNSURE, straight_on
 from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
@@ -209,6 +209,8 @@ def complete(
                 )  # fmt: skip
                 report[1] += iterations
                 if code not in (PLACED, DOUBTED, NOT_CONVERGED):
+                    continue
+                if code != NOT_CONVERGED and folds_before(-s * side, ex, ey, gx, gy, ux, uy, vx, vy, side):
                     continue
                 if code == NOT_CONVERGED and status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD:
                     continue

@@ -137,6 +137,25 @@ def place(
 
 
 @kernel
+def folds_before(sine, ex, ey, gx, gy, ux, uy, vx, vy, side):
+    """Whether a cell folds at one of the three corners D, A, B that were there before its node.
+
+    Their angles lie between 1 and 179 degrees in a cell that does not: three corners of a cell may be open and the
+    fourth turned over.
+
+    Parameters
+    ----------
+    sine : float
+        Of the angle from warp to weft at D, in the sense of the quadrant.
+    ex, ey, gx, gy
+        Unit directions in which D's edges arrive: the warp at B, the weft at A.
+    ux, uy, vx, vy
+        Those in which the node's edges leave: the warp A, the weft B.
+    """
+    return sine < FOLD_SINE or (ux * gy - uy * gx) * side < FOLD_SINE or (ex * vy - ey * vx) * side < FOLD_SINE
+
+
+@kernel
 def _touch(vertex, f, g):
     """Whether two faces share a vertex."""
     for k in range(3):

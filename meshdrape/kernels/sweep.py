@@ -7,7 +7,16 @@ import numpy as np
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.certify import second_route
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
-from meshdrape.kernels.place import DOUBTED, FOLD_SINE, NOT_CONVERGED, OUTSIDE, PLACED, place
+from meshdrape.kernels.place import (
+    DOUBTED,
+    FOLD_SINE,
+    FOLDED,
+    NOT_CONVERGED,
+    OUTSIDE,
+    PLACED,
+    folds_before,
+    place,
+)
 from meshdrape.kernels.shear import past_stop
 from meshdrape.kernels.walk import WALKED, off_mould, walk
 
@@ -189,7 +198,7 @@ def sweep(
             else:
                 qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
             if at_seed:
-                half = _half_fibre(si, sj)
+                half = half_fibre(si, sj)
                 # quadrants counter-clockwise; weft seen from warp is left of it where si and sj agree
                 c = math.cos(start.sector[half])
                 s = -side * math.sin(start.sector[half])
@@ -231,6 +240,8 @@ def sweep(
                 tolerance,
             )
             report[1] += iterations
+            if code in (PLACED, DOUBTED) and folds_before(-s * side, ex, ey, gx, gy, ux, uy, vx, vy, side):
+                code = FOLDED
             if every and code == PLACED:
                 code = NOT_CONVERGED
             if code == PLACED:
@@ -279,7 +290,7 @@ def sweep(
 
 
 @kernel
-def _half_fibre(si, sj):
+def half_fibre(si, sj):
     """Half-fibre that bounds a quadrant clockwise; they are numbered counter-clockwise from +warp."""
     if sj > 0:
         return 0 if si > 0 else 1
@@ -311,7 +322,7 @@ def _go_free(mesh, detours, net, start, si, sj, i, j, has_a, has_b, warp, weft, 
     ia = i - si
     jb = j - sj
     side = float(si * sj)
-    half = _half_fibre(si, sj)
+    half = half_fibre(si, sj)
     if has_a and status[i, jb] == OUTSIDE and _near_mould(status, ia, j, -si, 0, i0, j0):
         if ia != i0:
             if status[ia - si, j] <= OFF_MOULD:

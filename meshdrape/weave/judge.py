@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels.edges import WARP, WEFT, edge_ends, edge_key, keep_edge
+from meshdrape.kernels.place import FOLD_SINE
 from meshdrape.kernels.shear import past_stop
-from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, UNSURE
+from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, UNSURE, half_fibre
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.kernels.walk import off_mould
 from meshdrape.surface import Surface
@@ -107,7 +108,7 @@ class Judge:
             self._keep_cell(i, j, sense)
             return
         found = search.run(node, float(sense[0] * sense[1]))
-        if found is None:
+        if found is None or self._folded(i, j, sense, found):
             self._settle(i, j, sense)
         else:
             self._write(i, j, sense, found)
@@ -133,7 +134,7 @@ class Judge:
             self._write(i, j, sense, found)
 
     def _folded(self, i: int, j: int, sense: Sense, found: Settled) -> bool:
-        """Whether the cell of a node found has a corner of 180 degrees or more elsewhere."""
+        """Whether the cell of a node found folds at one of its corners."""
         mesh, lattice, fabric, side = self._surface.unfolding, self._lattice, self._fabric, sense[0] * sense[1]
         corner = (i - sense[0], j - sense[1])
         if lattice.status[corner] > NodeStatus.OFF_MOULD:
@@ -145,10 +146,11 @@ class Judge:
             _cross(to_b[:2], to_a[:2]),
             _cross(found.warp_edge.leave, to_a[2:]),
             _cross(to_b[2:], found.weft_edge.leave),
+            _cross(found.warp_edge.arrive, found.weft_edge.arrive),
         ]
         if corner == tuple(self.start.origin):
-            turns = turns[1:]
-        return min(side * turn for turn in turns) <= 0
+            turns[0] = side * float(np.sin(self.start.sector[half_fibre(*sense)]))
+        return min(side * turn for turn in turns) < FOLD_SINE
 
     def _search(self, i: int, j: int, sense: Sense, slack: float | None = None) -> NodeSearch:
         fabric = self._fabric

@@ -117,3 +117,32 @@ def test_off_mould_and_outside():
         net.count(NodeStatus.PLACED) + net.count(NodeStatus.OFF_MOULD) + net.count(NodeStatus.OUTSIDE)
         == net.node_status.size
     )
+
+
+@pytest.mark.parametrize("spacing", [20.0, 30.0, 60.0])
+def test_no_cell_is_laid_that_folds_at_any_corner(spacing):
+    """Past the corners of an icosahedron three corners of a cell may be open and the fourth turned over."""
+    mould = icosphere(0, 100.0).mould()
+    corners = mould.surface.vertices[mould.surface.faces[0]]
+    for seed, direction in ((corners.mean(axis=0), corners[1] - corners[0]), (corners[:2].mean(axis=0), (0, 1, 0))):
+        net = meshdrape.drape(mould, meshdrape.Fabric(spacing), seed=seed, direction=direction)
+        angle = np.pi / 2 - meshdrape.measure(net).cell_shear
+        assert net.count(NodeStatus.FOLDED) > 0
+        assert np.nanmin(angle) > np.radians(1)
+        assert np.nanmax(angle) < np.radians(179)
+        # none lies flat on itself, its opposite corners on one place
+        place = net.node_position
+        for across in (place[1:, 1:] - place[:-1, :-1], place[1:, :-1] - place[:-1, 1:]):
+            assert not (np.linalg.norm(across, axis=2)[np.isfinite(angle)] < 1e-3 * spacing).any()
+
+
+def test_cloth_folds_at_a_seed_whose_quarters_exceed_half_a_turn():
+    n, steep = 8, 0.8
+    azimuth, height = 2 * np.pi * np.arange(n) / n, np.where(np.arange(n) % 2, steep, -steep)
+    rim = np.stack([np.cos(azimuth) * np.cos(height), np.sin(azimuth) * np.cos(height), np.sin(height)], axis=1)
+    faces = [[0, 1 + k, 1 + (k + 1) % n] for k in range(n)]
+    mould = meshdrape.Mould.from_arrays(np.concatenate([np.zeros((1, 3)), 100 * rim]), faces)
+    assert mould.surface.vertex_angle[0] > 4 * np.pi
+    net = meshdrape.drape(mould, meshdrape.Fabric(10.0), seed=(0, 0, 0), direction=rim[0])
+    i, j = net.seed_index
+    assert (net.node_status[[i - 1, i - 1, i + 1, i + 1], [j - 1, j + 1, j - 1, j + 1]] == NodeStatus.FOLDED).all()
