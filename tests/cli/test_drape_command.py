@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command import CAD, SAMPLES, binary_stl, draped, run
+from command import CAD, SAMPLES, draped, run
+from meshfiles import binary_stl
 from moulds import cap, grid, icosphere, plate
 
 import meshdrape
@@ -121,23 +122,9 @@ def test_net_file_holds_the_net_of_the_public_names(whole, through_api):
     assert stored.mould_file.resolve() == net.mould.source.resolve()
 
 
-@pytest.fixture
-def opened_in_meshlab():
-    import pymeshlab
-
-    alive = []  # a mesh is a view into its set
-
-    def load(path):
-        alive.append(pymeshlab.MeshSet())
-        alive[-1].load_new_mesh(str(path))
-        return alive[-1].current_mesh()
-
-    return load
-
-
-def test_net_file_opens_in_meshlab(whole, opened_in_meshlab):
+def test_net_file_opens_in_meshlab(whole, meshlab):
     stored = meshdrape.read_net(whole)
-    mesh = opened_in_meshlab(whole)
+    mesh = meshlab(whole)
     there = np.isfinite(stored.node_position[..., 0])
     np.testing.assert_allclose(mesh.vertex_matrix(), stored.node_position[there], rtol=0, atol=1e-9)
     shear = np.degrees(np.abs(stored.cell_shear[np.isfinite(stored.cell_shear)]))
@@ -148,8 +135,8 @@ def test_net_file_opens_in_meshlab(whole, opened_in_meshlab):
     assert mesh.has_face_color()
 
 
-def test_companions_open_in_meshlab(whole, through_api, opened_in_meshlab):
-    mould, fibres = (opened_in_meshlab(whole.with_suffix(suffix)) for suffix in (".mould.ply", ".fibres.ply"))
+def test_companions_open_in_meshlab(whole, through_api, meshlab):
+    mould, fibres = (meshlab(whole.with_suffix(suffix)) for suffix in (".mould.ply", ".fibres.ply"))
     field = read_off(through_api, (0, 1, 0))
     np.testing.assert_allclose(mould.vertex_matrix(), field.vertices, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(mould.face_matrix(), field.triangles)
