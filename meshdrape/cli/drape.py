@@ -29,7 +29,13 @@ AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_mould_options(parser)
-    parser.add_argument("-o", "--output", required=True, metavar="NET.ply", help="the net; its companions go beside it")
+    parser.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="NET.ply",
+        help="the net; NET.mould.ply, NET.fibres.ply, NET.json and NET.png go beside it",
+    )
     add_cloth_options(parser, spacing_required=True)
     start = add_start_options(parser)
     for name in ("warp", "weft"):
@@ -44,7 +50,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             help=f"points of the {name} start fibre in mm: x y z a line, or an OBJ line",
         )
     start.add_argument(
-        "--stop-at", type=degrees, metavar="DEG", help="end the cloth before the first cell sheared by more"
+        "--stop-at",
+        type=degrees,
+        metavar="DEG",
+        help="end the cloth, cell by cell, before the first that would shear by more",
     )
     start.add_argument(
         "--recrossing", action="store_true", help="go on where a fibre comes back over a crease that it crossed"
@@ -56,16 +65,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=axis,
         default=(1.0, 0.0, 0.0),
         metavar="X,Y,Z",
-        help="zero of fibre angles (x)",
+        help="axis that fibre angles count from, projected on the mould (1,0,0)",
     )
     out.add_argument("--json", action="store_true", help="print the summary as JSON")
     out.add_argument("--quiet", action="store_true", help="print nothing but errors")
     out.add_argument("--no-picture", action="store_true", help="do not draw NET.png")
     out.add_argument(
-        "--refine", action="store_true", help="drape on two coarser tessellations too: an error bar for the shear"
+        "--refine",
+        action="store_true",
+        help="drape on two coarser tessellations too, for an error bar of the maximum shear; not of a mesh file",
     )
-    out.add_argument("--engine", choices=("fast", "libigl"), default="fast", help="libigl: every node by it; slow")
-    out.add_argument("--threads", type=count, metavar="N", help="default: all cores; the net does not depend on it")
+    out.add_argument(
+        "--engine",
+        choices=("fast", "libigl"),
+        default="fast",
+        help="libigl: every node from its exact distances, slow, to check by (fast)",
+    )
+    out.add_argument(
+        "--threads", type=count, metavar="N", help="threads to drape on (all cores); the net does not depend on it"
+    )
 
 
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
