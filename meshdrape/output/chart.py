@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 BLUE: Final = "#0072B2"
 GREEN: Final = "#009E73"
 ORANGE: Final = "#E69F00"
-SKY: Final = "#56B4E9"
 VERMILION: Final = "#D55E00"
 PURPLE: Final = "#CC79A7"
 INK: Final = "#1C1E24"

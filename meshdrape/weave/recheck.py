@@ -96,11 +96,6 @@ class Recheck:
     failures: tuple[str, ...]
     seconds: float
 
-    @property
-    def holds(self) -> bool:
-        """Whether the net is what it says."""
-        return not self.failures
-
 
 def recheck(
     mould: Mould,
