@@ -46,19 +46,19 @@ class StartFibres:
 
     @property
     def turns(self) -> tuple[float | None, float | None]:
-        """Of warp and weft."""
+        """Of warp and weft, rad."""
         return self.warp_turn, self.weft_turn
 
     @property
     def paths(self) -> tuple[FloatArray | None, FloatArray | None]:
-        """Of warp and weft."""
+        """Of warp and weft, (n, 3) mm each."""
         return self.warp_path, self.weft_path
 
 
 def prescribe(
     warp_turn: float | None, weft_turn: float | None, warp_path: ArrayLike | None, weft_path: ArrayLike | None
 ) -> StartFibres:
-    """What was asked for, checked as far as it can be without the mould.
+    """What was asked for, turns in rad and paths (n, 3) in mm, checked as far as it can be without the mould.
 
     Raises
     ------

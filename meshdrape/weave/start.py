@@ -50,8 +50,8 @@ class SeedStar:
 def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initial_angle: float) -> SeedStar:
     """Half-fibres of a seed: the warp along `direction`, projected, the weft at the initial angle from it.
 
-    The star of the seed is unfolded to its total angle A; counter-clockwise about the normal the half-fibres follow
-    at initial_angle A / 2 pi, A / 2 and A / 2 + initial_angle A / 2 pi.
+    `direction` is a vector (3,) of any length. The star of the seed is unfolded to its total angle A; counter-clockwise
+    about the normal the half-fibres follow at initial_angle A / 2 pi, A / 2 and A / 2 + initial_angle A / 2 pi.
 
     Raises
     ------
