@@ -120,6 +120,12 @@ def _packed(image: Any, *, palette: bool) -> bytes:
     return out.getvalue()
 
 
+def mark_locking(ax: Axes, locking_angle: float) -> None:
+    """Draw the locking angle, rad, across a chart of shear in degrees."""
+    lock = np.degrees(locking_angle)
+    ax.axhline(lock, color=VERMILION, linewidth=1.0, label=f"locking, {lock:g}°")
+
+
 def shear_map(locking_angle: float, largest: float) -> ListedColormap:
     """The package's colours of shear from 0 to the largest, rad, as a colour map for matplotlib."""
     from matplotlib.colors import ListedColormap
