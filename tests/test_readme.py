@@ -73,7 +73,7 @@ def test_links_lead_somewhere(page):
         assert (ROOT / page).parent.joinpath(link).exists(), link
 
 
-def test_pictures_and_samples_are_all_spoken_of():
+def test_every_picture_is_shown():
     assert {f"docs/{path.name}" for path in (ROOT / "docs").glob("*.png")} <= set(re.findall(r"\((docs/\S+)\)", README))
 
 
