@@ -181,7 +181,7 @@ class Surface:
 
     @cached_property
     def border_loops(self) -> list[IntArray]:
-        """Half-edges 3 f + k along each border, (k,) each, the mould on their left; longest loop first."""
+        """Half-edges 3 f + k along each border, the mould on their left; longest loop first."""
         face, k = np.nonzero(self.face_neighbour < 0)
         half = 3 * face + k
         following: dict[int, int] = {}
