@@ -121,6 +121,18 @@ def recheck(
         libigl stops after this long.
     seed : int
         Of the random sample.
+    threads : int
+        For the kernels; the answer does not depend on it.
+
+    Returns
+    -------
+    Recheck
+        Its ``failures`` are empty where the net holds.
+
+    Raises
+    ------
+    StartError
+        If the stored direction is none.
     """
     begun = time.perf_counter()
     rebuilt = rebuild(mould, stored, threads)
