@@ -12,13 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
 from meshdrape.surface import Surface
-from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net
 from meshdrape.weave.prescribed import courses_on, prescribe
-from meshdrape.weave.recross import Creases, end_where_recrossed
+from meshdrape.weave.recross import creases_of, end_where_recrossed
 from meshdrape.weave.start import part_under
 
 if TYPE_CHECKING:
@@ -159,11 +158,8 @@ def drape(
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
     if not recrossing:
-        if "_creases" not in vars(part):
-            edges = crease_edges(part, mould.triangle_face[part_face], mould.angle_tolerance)
-            # kept with the surface, as its collar is, for the next drape
-            vars(part)["_creases"] = Creases(part, edges)
-        end_where_recrossed(vars(part)["_creases"], surface, fabric, lattice, start, threads)
+        creases = creases_of(part, mould.triangle_face[part_face], mould.angle_tolerance)
+        end_where_recrossed(creases, surface, fabric, lattice, start, threads)
     trim(surface, fabric, lattice, start, threads)
     frame = surface.unfolding.frame[start.face[0]]
     return Net(
