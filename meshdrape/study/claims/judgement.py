@@ -1,7 +1,7 @@
 """How a verdict follows from numbers: one rule a kind of claim, each with its threshold in words.
 
-No verdict is written down anywhere else; a claim hands its measured numbers to one of these rules. They may be arrays of
-any shape, of which the worst entry counts.
+No verdict is written down anywhere else; a claim hands its measured numbers to one of these rules. They may be arrays
+of any shape, of which the worst entry counts.
 """
 
 from __future__ import annotations
