@@ -152,7 +152,7 @@ def _criteria(verdict: Verdict) -> str:
 
 
 def _laying(answer: FoldAnswer) -> str:
-    laying, locking_angle = answer.laying, answer.verdict.locking_angle
+    laying, locking = answer.laying, answer.verdict.locking_angle
     best = laying.best
     text = (
         f"<p>Cheapest: on the <b>{best.first}</b> first, from the <b>{best.end}</b>, left-most ribbon "
@@ -161,27 +161,27 @@ def _laying(answer: FoldAnswer) -> str:
         f"start the best γ is {_deg(laying.gamma_best)}.</p>"
     )
     shown = list(laying.choices[:_MOST_CHOICES])
-    rows = [_choice(choice, choice == best, locking_angle) for choice in shown]
+    rows = [_choice(choice, choice == best, locking) for choice in shown]
     head = ("first", "from", "left-most ribbon", "γ", *_REGIONS, "rows that<br>come back")
     return text + _table(head, rows, numeric=(3, 4, 5, 6))
 
 
-def _choice(choice: Choice, best: bool, locking_angle: float) -> str:
+def _choice(choice: Choice, best: bool, locking: float) -> str:
     words = (choice.first, choice.end, RULES.get(choice.rule, choice.rule))
     cells = "".join(f"<td>{escape(word)}</td>" for word in words) + f'<td class="n">{_deg(choice.gamma)}</td>'
     for value in (choice.shear.wing_fed, choice.shear.ribbon_fed, None if choice.well_posed else choice.returning):
-        cells += _angle_cell(value, locking_angle)
+        cells += _angle_cell(value, locking)
     return f"<tr{' class=chosen' if best else ''}>{cells}</tr>"
 
 
-def _limits(limits: Iterable[Limit], locking_angle: float) -> str:
+def _limits(limits: Iterable[Limit], locking: float) -> str:
     rows = []
     for limit in limits:
         if limit.factor is None:
             factor = "no limit" if isinf(limit.tried) else f"more than {limit.tried:.3g}"
         else:
             factor = f"{limit.factor:.3f}"
-        cells = "".join(_angle_cell(value, locking_angle) for value in (limit.shear.wing_fed, limit.shear.ribbon_fed))
+        cells = "".join(_angle_cell(value, locking) for value in (limit.shear.wing_fed, limit.shear.ribbon_fed))
         rows.append(
             f'<tr><td>{escape(RULES.get(limit.rule, limit.rule))}</td><td class="n">{factor}</td>'
             f'<td class="n">{_deg(limit.gamma)}</td>{cells}</tr>'
@@ -196,7 +196,7 @@ def _limits(limits: Iterable[Limit], locking_angle: float) -> str:
     return _table(head, rows, numeric=(1, 2, 3, 4))
 
 
-def _nearest(nearest: NearestSpar, locking_angle: float) -> str:
+def _nearest(nearest: NearestSpar, locking: float) -> str:
     laid = f"γ = {_deg(nearest.gamma)}"
     if nearest.unchanged:
         return f"<p>The spar can stay as it is, laid with {laid}: {_deg(nearest.shear.largest)} in the drape.</p>"
@@ -205,7 +205,7 @@ def _nearest(nearest: NearestSpar, locking_angle: float) -> str:
         f"<p>Nearest spar that can be made (least squares in {escape(nearest.measure)}): at most "
         f"<b>{nearest.largest_loss:.1f} mm</b> from the wanted one, at y = {nearest.largest_loss_at / 1000:.2f} m, "
         f"{nearest.rms_loss:.1f} mm in the mean square; laid with {laid} it shears by {_deg(nearest.shear.largest)} of "
-        f"{_deg(locking_angle)}: {proof} ({nearest.drapes} drapes).</p>"
+        f"{_deg(locking)}: {proof} ({nearest.drapes} drapes).</p>"
     )
 
 
@@ -228,10 +228,10 @@ def _table(head: tuple[str, ...], rows: list[str], numeric: tuple[int, ...]) -> 
     return f"<table><thead><tr>{titles}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
 
 
-def _angle_cell(value: float | None, locking_angle: float) -> str:
+def _angle_cell(value: float | None, locking: float) -> str:
     if value is None:
         return '<td class="n">–</td>'
-    return f'<td class="n{" over" if value > locking_angle else ""}">{_deg(value)}</td>'
+    return f'<td class="n{" over" if value > locking else ""}">{_deg(value)}</td>'
 
 
 def _deg(value: float) -> str:
