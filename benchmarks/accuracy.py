@@ -1,7 +1,7 @@
 """How far nets on the sample moulds lie from what is known without a mesh. Prints the accuracy table of the README.
 
 Run it as ``python benchmarks/accuracy.py``. References: the facts in ``samples/README.md``; on the sphere the smooth
-limit sigma(u, v) = W(K u v) with (t W')' = -sin W, W(0) = pi/2, solved here by its power series.
+limit sigma(u, v) = W(K u v) of :func:`meshdrape.theory.constant_curvature_angle`.
 """
 
 from __future__ import annotations
@@ -11,28 +11,9 @@ from pathlib import Path
 import numpy as np
 
 import meshdrape
+from meshdrape.theory import constant_curvature_angle
 
 SAMPLES = Path(__file__).resolve().parent.parent / "samples"
-
-
-def sphere_angle(t: np.ndarray) -> np.ndarray:
-    """W(t) by Runge-Kutta from the series at 0, rad."""
-    fine = np.linspace(1e-6, float(t.max()), 4001)
-    step = fine[1] - fine[0]
-    state = np.array([np.pi / 2 - fine[0], -1.0])
-    values = [state[0]]
-
-    def slope(at: float, y: np.ndarray) -> np.ndarray:
-        return np.array([y[1], (-np.sin(y[0]) - y[1]) / at])
-
-    for at in fine[:-1]:
-        k1 = slope(at, state)
-        k2 = slope(at + step / 2, state + step / 2 * k1)
-        k3 = slope(at + step / 2, state + step / 2 * k2)
-        k4 = slope(at + step, state + step * k3)
-        state = state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        values.append(state[0])
-    return np.interp(t, fine, values)
 
 
 def lay(name: str, spacing: float, seed: tuple[float, ...], direction: tuple[float, ...]) -> meshdrape.Measures:
@@ -62,7 +43,7 @@ def main() -> None:
         i0, j0 = ball.net.seed_index
         n = int(400 / spacing)
         centre = (np.arange(n) + 0.5) * spacing / 500
-        wanted = np.pi / 2 - sphere_angle(np.multiply.outer(centre, centre))
+        wanted = np.pi / 2 - constant_curvature_angle(np.multiply.outer(centre, centre))
         off = np.abs(ball.cell_shear[i0 : i0 + n, j0 : j0 + n] - wanted)
         row(f"hemisphere, {spacing:g} mm", ball, "smooth limit, cells within 0.8 R", f"{np.degrees(off.max()):.3f} deg")
     saddle = lay("hypar", 50.0, (0, 0, 0), (1, 0, 0))

@@ -1,4 +1,4 @@
-"""Speed and memory of the main job, warmed up; compile time told apart. Prints the table of the README.
+"""Speed and memory of the main job, warmed up; compile time told apart. Each row beside what it should reach.
 
 All rows: ``python benchmarks/main_job.py``; some: ``python benchmarks/main_job.py wing sphere``, of wing, sphere,
 command, help and compilation.
@@ -119,7 +119,7 @@ JOBS = {"wing": wing, "sphere": sphere, "command": command, "help": help_text, "
 def main() -> None:
     asked = sys.argv[1:] or list(JOBS)
     print(f"meshdrape {meshdrape.__version__}, Python {platform.python_version()}, {os.cpu_count()} cores\n")
-    print("| what | measured | asked |\n|---|---|---|")
+    print("| what | measured | should reach |\n|---|---|---|")
     for name in asked:
         JOBS[name]()
 

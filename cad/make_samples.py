@@ -150,6 +150,8 @@ def readme(shapes: dict[str, cq.Workplane], folder: Path) -> str:
         "Millimetres throughout. Each is the open tool surface, drapable as it is, its normals on the",
         "cloth's side; only `wing_spar_block.step` is a solid, to choose faces from.",
         "",
+        "By hand: `designs/`, wings and spars for `meshdrape fold`; `fibres/`, a start fibre drawn on a mould.",
+        "",
         "## Exact facts",
         "",
         "Of the shapes as designed; a tessellation comes as near as its tolerances allow.",

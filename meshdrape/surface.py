@@ -199,12 +199,15 @@ class Surface:
         return loops
 
     def is_hole(self, loop: IntArray) -> bool:
-        """Whether a border turns backwards in all: about -2 pi for a hole, 0 for a tube's end, 2 pi for an outline."""
+        """Whether a border loop, (k,) half-edges, turns backwards in all.
+
+        By about -2 pi round a hole, 0 round a tube's end, 2 pi round an outline.
+        """
         tails = self.faces[loop // 3, loop % 3]
         return float(np.sum(np.pi - self.vertex_angle[tails])) < -np.pi
 
     def half_edge_length(self, half: IntArray) -> FloatArray:
-        """Lengths of the half-edges 3 f + k, mm."""
+        """Lengths of half-edges 3 f + k, (k,) mm."""
         face, k = half // 3, half % 3
         ends = self.vertices[self.faces[face, (k + 1) % 3]] - self.vertices[self.faces[face, k]]
         return np.asarray(np.linalg.norm(ends, axis=-1))
@@ -239,7 +242,7 @@ class Surface:
         return int(self.face_component.max()) + 1
 
     def component(self, number: int) -> tuple[Surface, IntArray]:
-        """One connected part, and the face of this surface behind each of its faces."""
+        """One connected part, and the face of this surface behind each of its m faces, (m,)."""
         kept = np.flatnonzero(self.face_component == number)
         used, compact = np.unique(self.faces[kept], return_inverse=True)
         return Surface.from_arrays(self.vertices[used], compact.reshape(-1, 3)), kept

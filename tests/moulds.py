@@ -74,6 +74,11 @@ def grid(u: ArrayLike, v: ArrayLike, place: Callable[[FloatArray, FloatArray], t
 # --- flat -----------------------------------------------------------------------------------------------------------
 
 
+def tiles(n: int = 4) -> Mesh:
+    """n x n unit squares, two triangles each; vertex (i, j) is number i (n + 1) + j."""
+    return grid(np.arange(n + 1), np.arange(n + 1), lambda x, y: (x, y, 0))
+
+
 def plate(length: float = 200.0, width: float = 140.0, cells: tuple[int, int] = (9, 7), jitter_seed: int = 1) -> Mesh:
     """A rectangle about the origin whose inner vertices are off the grid: no fibre runs along edges by chance."""
     mesh = grid(
@@ -269,6 +274,22 @@ def krogh(n: int = 60) -> Mesh:
         return 1000 * x, 1000 * y, 1000 * z
 
     return grid(side, side, place)
+
+
+# --- one-sided ------------------------------------------------------------------------------------------------------
+
+
+def moebius(cells: int = 40) -> Mesh:
+    """A strip about the circle of radius 1 that is turned over once."""
+    t = np.arange(cells) * 2 * np.pi / cells
+    edges = [
+        np.stack([(1 + s * np.cos(t / 2)) * np.cos(t), (1 + s * np.cos(t / 2)) * np.sin(t), s * np.sin(t / 2)], 1)
+        for s in (-0.3, 0.3)
+    ]
+    i = np.arange(cells - 1)
+    inner = [np.stack([i, i + 1, cells + i + 1], 1), np.stack([i, cells + i + 1, cells + i], 1)]
+    last = [[cells - 1, cells, 0], [cells - 1, 0, 2 * cells - 1]]
+    return Mesh(np.concatenate(edges), np.concatenate([*inner, last]))
 
 
 # --- polyhedra ------------------------------------------------------------------------------------------------------

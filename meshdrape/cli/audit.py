@@ -1,4 +1,4 @@
-"""meshdrape audit NET.ply: a finished net checked again from its file alone."""
+"""meshdrape audit NET.ply: a finished net checked again, from its file and the mould's."""
 
 from __future__ import annotations
 
@@ -27,9 +27,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("net", metavar="NET.ply", help="a net that meshdrape wrote")
     parser.add_argument("--mould", metavar="FILE", help="the mould's file, where it is not where the net says")
     sample = parser.add_mutually_exclusive_group()
-    sample.add_argument("--edges", type=count, metavar="N", help="edges for libigl to measure, chosen at random")
     sample.add_argument(
-        "--seconds", type=positive, metavar="S", help=f"time for libigl, all edges if it suffices ({SECONDS:g})"
+        "--edges", type=count, metavar="N", help="let libigl measure N edges, chosen at random, however long it takes"
+    )
+    sample.add_argument(
+        "--seconds",
+        type=positive,
+        metavar="S",
+        help=f"let libigl measure edges for S seconds, all of them if that suffices ({SECONDS:g})",
     )
     parser.add_argument("--json", action="store_true", help="print as JSON")
 

@@ -29,7 +29,13 @@ AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_mould_options(parser)
-    parser.add_argument("-o", "--output", required=True, metavar="NET.ply", help="the net; its companions go beside it")
+    parser.add_argument(
+        "-o",
+        "--output",
+        required=True,
+        metavar="NET.ply",
+        help="the net; NET.mould.ply, NET.fibres.ply, NET.json and NET.png go beside it",
+    )
     add_cloth_options(parser, spacing_required=True)
     start = add_start_options(parser)
     for name in ("warp", "weft"):
@@ -44,7 +50,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             help=f"points of the {name} start fibre in mm: x y z a line, or an OBJ line",
         )
     start.add_argument(
-        "--stop-at", type=degrees, metavar="DEG", help="end the cloth before the first cell sheared by more"
+        "--stop-at",
+        type=degrees,
+        metavar="DEG",
+        help="end the cloth, cell by cell, before the first that would shear by more",
     )
     start.add_argument(
         "--recrossing", action="store_true", help="go on where a fibre comes back over a crease that it crossed"
@@ -56,16 +65,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=axis,
         default=(1.0, 0.0, 0.0),
         metavar="X,Y,Z",
-        help="zero of fibre angles (x)",
+        help="axis that fibre angles count from, projected on the mould (1,0,0)",
     )
     out.add_argument("--json", action="store_true", help="print the summary as JSON")
     out.add_argument("--quiet", action="store_true", help="print nothing but errors")
     out.add_argument("--no-picture", action="store_true", help="do not draw NET.png")
     out.add_argument(
-        "--refine", action="store_true", help="drape on two coarser tessellations too: an error bar for the shear"
+        "--refine",
+        action="store_true",
+        help="drape on two coarser tessellations too, for an error bar of the maximum shear; not of a mesh file",
     )
-    out.add_argument("--engine", choices=("fast", "libigl"), default="fast", help="libigl: every node by it; slow")
-    out.add_argument("--threads", type=count, metavar="N", help="default: all cores; the net does not depend on it")
+    out.add_argument(
+        "--engine",
+        choices=("fast", "libigl"),
+        default="fast",
+        help="libigl: every node from its exact distances, slow, to check by (fast)",
+    )
+    out.add_argument(
+        "--threads", type=count, metavar="N", help="threads to drape on (all cores); the net does not depend on it"
+    )
 
 
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
@@ -146,7 +164,9 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     if options.json:
         sys.stdout.write(json_text(summary))
     elif not options.quiet:
-        sys.stdout.write(_report(summary, [*files, json_path]))
+        from meshdrape.output.drape_text import drape_text
+
+        sys.stdout.write(drape_text(summary, [*files, json_path]))
     return FABRIC_MISSING if fabric_missing(net) else DONE
 
 
@@ -182,78 +202,3 @@ def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, p
         draw_net(net, measures, picture_path)
         written.append(picture_path)
     return written
-
-
-def _balance_text(summary: dict[str, Any]) -> str:
-    at = summary["balance_residual_at"]
-    where = "" if at is None else f", worst at ({', '.join(f'{v:.1f}' for v in at)})"
-    return f"shear agrees with the enclosed curvature to {summary['balance_residual_deg']:.2g} deg{where}"
-
-
-def _report(summary: dict[str, Any], files: list[Path]) -> str:
-    """The summary for people."""
-    mould, fabric, cloth, checked = summary["mould"], summary["fabric"], summary["cloth_mm"], summary["audit"]
-    size = " x ".join(f"{v:,.0f}" for v in mould["size_mm"])
-    tolerances = (
-        ""
-        if mould["angle_tolerance_deg"] is None
-        else f" at {mould['angle_tolerance_deg']:g} deg and {mould['chord_tolerance_mm']:g} mm"
-    )
-    spacing_mm = fabric["spacing_mm"]
-    woven = f"{spacing_mm[0]:g}" if spacing_mm[0] == spacing_mm[1] else f"{spacing_mm[0]:g} x {spacing_mm[1]:g}"
-    at = summary["max_shear_at"]
-    where = "" if at is None else f" at ({', '.join(f'{v:.1f}' for v in at)})"
-    if summary["max_shear_face"]:
-        where += f", face {summary['max_shear_face']}"
-    error = summary["audit_max_relative_error"]
-    rows = [
-        ("mould", f"{mould['file']}, {size} mm, {mould['triangles']:,} triangles{tolerances}"),
-        ("seed", f"({', '.join(f'{v:.3f}' for v in summary['seed'])})"),
-        ("net", f"{summary['nodes']:,} nodes, {summary['cells']:,} cells, spacing {woven} mm"),
-        ("cloth", f"{cloth['warp']:,.0f} x {cloth['weft']:,.0f} mm, {cloth['area_mm2'] / 1e6:.3f} m2"),
-        ("coverage", f"{summary['coverage_percent']:.2f} % of the mould"),
-        ("max shear", f"{summary['max_shear_deg']:.3f} deg{where}"),
-        (
-            "locking",
-            f"{summary['over_locking_percent']:.2f} % of the area above {fabric['locking_angle_deg']:g} deg",
-        ),
-        ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg"),
-        ("balance", _balance_text(summary)),
-        ("audit", f"{checked['n_edges']:,} edges by libigl, largest relative error {error:.1e}"),
-        ("time", ", ".join(f"{stage} {value:.2f} s" for stage, value in summary["seconds"].items())),
-    ]
-    if "refinement" in summary:
-        bar = summary["refinement"]
-        tried = " / ".join(f"{value:.3f}" for value in bar["max_shear_deg"])
-        rows.insert(
-            6,
-            (
-                "refined",
-                f"max shear +- {bar['error_bar_deg']:.2g} deg ({tried} on {bar['triangles'][0]:,} to "
-                f"{bar['triangles'][2]:,} triangles); +- {bar['spacing_error_deg']:.2g} deg for the spacing",
-            ),
-        )
-    if summary["warp_angle_deg"]:
-        angle = summary["warp_angle_deg"]
-        rows.insert(
-            next(n for n, (name, _) in enumerate(rows) if name == "mesh noise"),
-            (
-                "warp angle",
-                f"{angle['min']:.2f} to {angle['max']:.2f} deg from the reference, mean {angle['mean']:.2f}",
-            ),
-        )
-    for name, fibre in summary["start_fibres"].items():
-        if fibre["turn_deg"] is not None:
-            rows.insert(2, (f"{name} fibre", f"turned by {fibre['turn_deg']:g} deg at the crease"))
-        if fibre["path_points"] is not None:
-            rows.insert(2, (f"{name} fibre", f"drawn through {fibre['path_points']} points"))
-    lines = [f"{name:>10}  {text}" for name, text in rows]
-    lines += [
-        f"{'face ' + str(face['id']):>10}  {face['name'] or ''} covered {face['coverage_percent']:.1f} %, "
-        f"max shear {face['max_shear_deg'] or 0:.3f} deg, {face['over_locking_percent']:.1f} % above locking"
-        for face in summary["faces"]
-    ]
-    lines += [f"{'note':>10}  {note}" for note in summary["notes"]]
-    lines += [f"{'WARNING':>10}  {warning}" for warning in summary["warnings"]]
-    lines += [f"{'wrote':>10}  {path}" for path in files]
-    return "\n".join(lines) + "\n"

@@ -30,14 +30,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the answer as a page with pictures, .html, or .json; repeatable",
     )
     parser.add_argument(
-        "--nearest", choices=("slope", "position"), default="slope", help="what the nearest spar is nearest in (slope)"
+        "--nearest",
+        choices=("slope", "position"),
+        default="slope",
+        help="whether the nearest spar that drapes is nearest in f' or in f (slope)",
     )
     chart = parser.add_argument_group("the chart of allowable deviations")
     chart.add_argument(
         "--chart", nargs="?", const=(20, 20), type=_grid, metavar="AxB",
-        help="drape A amplitudes x B wavelengths of a family of f (20x20)",
+        help="drape A amplitudes x B wavelengths of a family of f (20x20); takes a minute or more",
     )  # fmt: skip
-    chart.add_argument("--family", choices=("sine", "ripple", "bump"), default="sine", help="of f (sine)")
+    chart.add_argument("--family", choices=("sine", "ripple", "bump"), default="sine", help="the family of f (sine)")
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 

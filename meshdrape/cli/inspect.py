@@ -33,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_faces_option(group)
     add_cloth_options(parser, spacing_required=False)
     add_start_options(parser)
+    parser.epilog = f"Any of {', '.join(f'--{name}' for name in START)} asks what shear the start would need."
     parser.add_argument("--json", action="store_true", help="print as JSON")
 
 

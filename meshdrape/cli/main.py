@@ -17,8 +17,8 @@ DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
 
 COMMANDS = {
     "drape": "lay a fabric on a mould and write the net",
-    "audit": "check a finished net again from its file alone",
-    "inspect": "list the faces of a mould and check its mesh",
+    "audit": "check a finished net again, from its file and the mould's",
+    "inspect": "list the faces of a mould, check its mesh, foretell the shear of a start",
     "fold": "say how far a spar may leave the origami fold",
     "mould": "make a mould by one of the scripts that come with meshdrape",
     "validate": "recompute the study group report: every claim, its error and a verdict",

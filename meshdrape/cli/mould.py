@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("name", nargs="?", metavar="NAME", help="which mould; none: list them")
-    parser.add_argument("-o", "--output", metavar="FILE", help="where to: .step, .stp, .brep, .brp or .stl")
+    parser.add_argument("name", nargs="?", metavar="NAME", help="which mould; left out: list them")
+    parser.add_argument("-o", "--output", metavar="FILE", help="what to write: .step, .stp, .brep, .brp or .stl")
     group = parser.add_argument_group("the mould")
     add_parameters(group)
     add_tolerances(group)
     told = parser.add_argument_group("what there is")
     told.add_argument("--list", action="store_true", help="list the moulds")
-    told.add_argument("--parameters", action="store_true", help="list the parameters of the mould")
+    told.add_argument("--parameters", action="store_true", help="list the parameters of the mould NAME")
     parser.add_argument("--json", action="store_true", help="print as JSON")
 
 

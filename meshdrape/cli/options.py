@@ -101,12 +101,14 @@ def add_reading_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGr
 
 def add_tolerances(group: argparse._ArgumentGroup) -> None:
     """How finely CAD faces are cut into triangles."""
-    group.add_argument("--chord-tolerance", type=float, metavar="MM", help="largest gap from facets to CAD face (0.1)")
+    group.add_argument(
+        "--chord-tolerance", type=float, metavar="MM", help="largest gap between facets and CAD face (0.1)"
+    )
     group.add_argument(
         "--angle-tolerance",
         type=degrees,
         metavar="DEG",
-        help="largest angle between facets (0.2); wider, for the same error of shear, on doubly curved faces",
+        help="largest angle between neighbouring facets (0.2); wider on doubly curved faces, where it errs no more",
     )
 
 
@@ -121,27 +123,47 @@ def add_cloth_options(parser: argparse.ArgumentParser, *, spacing_required: bool
     """The fabric and how far it reaches."""
     cloth = parser.add_argument_group("the cloth")
     cloth.add_argument(
-        "--spacing", type=spacing, required=spacing_required, metavar="MM", help="node to node: 5, or WARP,WEFT"
+        "--spacing",
+        type=spacing,
+        required=spacing_required,
+        metavar="MM",
+        help="from node to node, such as 5; or WARP,WEFT",
     )
-    cloth.add_argument("--initial-angle", type=degrees, default=math.pi / 2, metavar="DEG", help="warp to weft (90)")
+    cloth.add_argument(
+        "--initial-angle",
+        type=degrees,
+        default=math.pi / 2,
+        metavar="DEG",
+        help="from warp to weft before it shears (90)",
+    )
     cloth.add_argument(
         "--locking-angle",
         type=degrees,
         default=math.radians(7),
         metavar="DEG",
-        help="shear at which it locks (7)",
+        help="shear at which it can shear no further (7)",
     )
     cloth.add_argument(
         "--extent", type=numbers(4, "four lengths in mm: WARP-,WARP+,WEFT-,WEFT+"), metavar="A,B,C,D",
-        help="cloth from the seed: back and forth along warp, then weft",
+        help="how far it reaches from the seed, mm: warp-, warp+, weft-, weft+ (as far as the mould)",
     )  # fmt: skip
 
 
 def add_start_options(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
     """Where the cloth is begun."""
     start = parser.add_argument_group("the start")
-    start.add_argument("--seed", type=numbers(3, POINT), metavar="X,Y,Z", help="default: near the middle")
-    start.add_argument("--direction", type=numbers(3, VECTOR), metavar="X,Y,Z", help="warp; default: the long way")
+    start.add_argument(
+        "--seed",
+        type=numbers(3, POINT),
+        metavar="X,Y,Z",
+        help="where warp and weft start fibre cross, mm (near the middle)",
+    )
+    start.add_argument(
+        "--direction",
+        type=numbers(3, VECTOR),
+        metavar="X,Y,Z",
+        help="of the warp there, projected on the mould (its long way)",
+    )
     return start
 
 

@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("-o", "--output", default=PAGE, metavar="PAGE.md",
                         help=f"the page; its pictures go into a folder PAGE beside it ({PAGE})")  # fmt: skip
-    parser.add_argument("--quick", action="store_true", help="coarser drapes and fewer of them, for a look")
+    parser.add_argument("--quick", action="store_true", help="coarser drapes and fewer of them, for a first look")
     parser.add_argument("--json", action="store_true", help="print the claims as JSON")
 
 

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 BLUE: Final = "#0072B2"
 GREEN: Final = "#009E73"
 ORANGE: Final = "#E69F00"
-SKY: Final = "#56B4E9"
 VERMILION: Final = "#D55E00"
 PURPLE: Final = "#CC79A7"
 INK: Final = "#1C1E24"
@@ -119,6 +118,12 @@ def _packed(image: Any, *, palette: bool) -> bytes:
         image = image.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     image.save(out, "PNG", optimize=True)
     return out.getvalue()
+
+
+def mark_locking(ax: Axes, locking_angle: float) -> None:
+    """Draw the locking angle, rad, across a chart of shear in degrees."""
+    lock = np.degrees(locking_angle)
+    ax.axhline(lock, color=VERMILION, linewidth=1.0, label=f"locking, {lock:g}°")
 
 
 def shear_map(locking_angle: float, largest: float) -> ListedColormap:

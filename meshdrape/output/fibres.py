@@ -44,7 +44,7 @@ def weft_fibres(net: Net, number: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def every_nth(n_fibres: int, every: int, through: int) -> NDArray[np.int64]:
-    """Return the numbers of every n-th fibre of a family, the one numbered `through` among them."""
+    """Return the numbers of every n-th fibre of a family, (k,), the one numbered `through` among them."""
     return np.arange(through % every, n_fibres, every)
 
 

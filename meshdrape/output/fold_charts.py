@@ -16,6 +16,7 @@ from meshdrape.output.chart import (
     ORANGE,
     PURPLE,
     VERMILION,
+    mark_locking,
     new_figure,
     png,
     shear_map,
@@ -36,7 +37,7 @@ _CELLS: Final = 24_000  # at most so many are drawn of a map
 RULES: Final = {"gamma 0": "upright, γ = 0", "free": "straight on", "best": "best γ", "design": "as designed"}
 
 
-def draw_along(where: Where, locking: float, gamma: float) -> bytes:
+def draw_along(where: Where, locking_angle: float, gamma: float) -> bytes:
     """ψ and the shear of both regions along the crease, with the pair of stations that sets each maximum."""
     with styled():
         figure = new_figure(_WIDTH, 3.8)
@@ -53,7 +54,7 @@ def draw_along(where: Where, locking: float, gamma: float) -> bytes:
             shear.plot(y, np.degrees(values), color=colour, label=name)
             if pair is not None:
                 _mark_pair(turn, shear, where, pair, turned, colour)
-        shear.axhline(np.degrees(locking), color=VERMILION, linewidth=1.0, label=f"locking, {np.degrees(locking):g}°")
+        mark_locking(shear, locking_angle)
         shear.set_ylabel("shear (degrees)")
         shear.set_xlabel("y along the span (m)")
         shear.set_xlim(float(y.min()), float(y.max()))
@@ -89,7 +90,7 @@ def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, gamma: float |
                    fontsize=8, weight="bold", ha="right")  # fmt: skip
 
 
-def draw_spar(spar: SparMap, where: Where, locking: float, second: str) -> bytes:
+def draw_spar(spar: SparMap, where: Where, locking_angle: float, second: str) -> bytes:
     """The sheet laid second, rolled out, coloured by its margin to locking, with the border of its regions."""
     from matplotlib.collections import PolyCollection
 
@@ -97,7 +98,7 @@ def draw_spar(spar: SparMap, where: Where, locking: float, second: str) -> bytes
         figure = new_figure(_WIDTH, 2.6)
         ax = figure.subplots()
         corners, shear = _blocks(spar)
-        colours = shear_colour(shear, locking) / 255.0
+        colours = shear_colour(shear, locking_angle) / 255.0
         ax.add_collection(PolyCollection(list(corners / METRE), facecolors=colours, edgecolors="face", linewidths=0.25))
         ax.plot(*(_rolled(spar, where.crease, second) / METRE).T, color=FAINT, linewidth=0.9)
         boundary = _rolled(spar, spar.boundary, second)
@@ -116,20 +117,20 @@ def draw_spar(spar: SparMap, where: Where, locking: float, second: str) -> bytes
         ax.set_xlabel("arc length along the span (m)")
         ax.set_ylabel("z (m)" if second == "spar" else "x (m)")
         ax.set_title(f"Margin to locking on the {second}, rolled out; grey: crease, black: border of the two regions")
-        _margin_bar(figure, ax, locking, float(np.nanmax(shear)) if len(shear) else 0.0)
+        _margin_bar(figure, ax, locking_angle, float(np.nanmax(shear)) if len(shear) else 0.0)
         return png(figure, palette=False)
 
 
-def _margin_bar(figure: Any, ax: Axes, locking: float, largest: float) -> None:
+def _margin_bar(figure: Any, ax: Axes, locking_angle: float, largest: float) -> None:
     """The colours of shear, told as what is left of the locking angle."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    top = max(locking, 1.02 * largest)
-    scale = ScalarMappable(Normalize(0.0, np.degrees(top)), shear_map(locking, top))
+    top = max(locking_angle, 1.02 * largest)
+    scale = ScalarMappable(Normalize(0.0, np.degrees(top)), shear_map(locking_angle, top))
     bar = figure.colorbar(scale, ax=ax, pad=0.015, aspect=14)
     bar.outline.set_linewidth(0.6)
-    lock = np.degrees(locking)
+    lock = np.degrees(locking_angle)
     step = next(s for s in (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 45.0) if np.degrees(top) / s <= 7)
     margins = np.arange(np.floor((lock - np.degrees(top)) / step) * step, lock + step, step)
     margins = margins[(margins <= lock + 1e-9) & (lock - margins <= np.degrees(top) + 1e-9)]
@@ -208,7 +209,7 @@ def _loss(ax: Axes, nearest: NearestSpar) -> None:
     ax.set_title("Nearest spar that can be made")
 
 
-def draw_envelope(envelope: Envelope, locking: float) -> bytes:
+def draw_envelope(envelope: Envelope, locking_angle: float) -> bytes:
     """Largest shear over amplitude and wavelength, every design draped, and the amplitude that is allowed."""
     from matplotlib.ticker import LogLocator
 
@@ -216,7 +217,7 @@ def draw_envelope(envelope: Envelope, locking: float) -> bytes:
         figure = new_figure(_WIDTH, 3.3)
         ax = figure.subplots()
         largest = envelope.largest
-        colours = shear_colour(largest, locking)
+        colours = shear_colour(largest, locking_angle)
         colours[~np.isfinite(largest)] = NO_CLOTH
         across = _borders(envelope.wavelength / METRE)
         up = np.stack([_borders(column) for column in envelope.amplitude.T], axis=1)
@@ -242,7 +243,7 @@ def draw_envelope(envelope: Envelope, locking: float) -> bytes:
         ax.grid(visible=False)
         ax.legend(loc="best", frameon=True, framealpha=0.9, edgecolor=FAINT)
         finite = largest[np.isfinite(largest)]
-        _margin_bar(figure, ax, locking, min(float(finite.max()), 3 * locking) if finite.size else 0.0)
+        _margin_bar(figure, ax, locking_angle, min(float(finite.max()), 3 * locking_angle) if finite.size else 0.0)
         return png(figure, palette=False)
 
 
@@ -263,13 +264,13 @@ def _borders(values: FloatArray) -> FloatArray:
 
 def pictures(answer: FoldAnswer) -> dict[str, bytes]:
     """All of an answer's pictures by name; no envelope where none was asked for."""
-    design, locking = answer.design, answer.verdict.locking_angle
+    design, locking_angle = answer.design, answer.verdict.locking_angle
     second = "spar" if design.first == "wing" else "wing"
     drawn = {
-        "along": draw_along(answer.where, locking, answer.verdict.gamma),
-        "spar": draw_spar(answer.where.spar, answer.where, locking, second),
+        "along": draw_along(answer.where, locking_angle, answer.verdict.gamma),
+        "spar": draw_spar(answer.where.spar, answer.where, locking_angle, second),
         "limits": draw_limits(design, answer.limits, answer.nearest),
     }
     if answer.envelope is not None:
-        drawn["envelope"] = draw_envelope(answer.envelope, locking)
+        drawn["envelope"] = draw_envelope(answer.envelope, locking_angle)
     return drawn

@@ -113,14 +113,14 @@ class Stage:
         self._polygons.append((np.asarray(points, dtype=np.float64), colour))
 
     def add_stroke(self, start: ArrayLike, end: ArrayLike, colour: Colour, width: float) -> None:
-        """Lay a straight stroke over the picture; all in pixels."""
+        """Lay a straight stroke from (x, y) to (x, y) over the picture; all in pixels."""
         a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
         along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-9)
         side = 0.5 * width * np.array([-along[1], along[0]])
         self.add_polygon([a + side, b + side, b - side, a - side], colour)
 
     def add_ring(self, centre: ArrayLike, radius: float, colour: Colour, width: float) -> None:
-        """Lay a circle over the picture; all in pixels."""
+        """Lay a circle about (x, y) over the picture; all in pixels."""
         angle = np.linspace(0.0, 2.0 * np.pi, 65)
         rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         outer = np.asarray(centre) + (radius + 0.5 * width) * rim

@@ -41,7 +41,7 @@ class Balance:
 
     @cached_property
     def residual(self) -> FloatArray:
-        """Measured less predicted shear, rad; NaN where there is no prediction."""
+        """Measured less predicted shear, (n_warp - 1, n_weft - 1) rad; NaN where there is no prediction."""
         return np.asarray(self.measures.cell_shear - self.predicted)
 
     @cached_property

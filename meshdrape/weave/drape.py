@@ -12,14 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
 from meshdrape.surface import Surface
-from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.fibre import Course, Track
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net
-from meshdrape.weave.prescribed import prescribe, tracks_on, turns_on
-from meshdrape.weave.recross import Creases, end_where_recrossed
+from meshdrape.weave.prescribed import courses_on, prescribe
+from meshdrape.weave.recross import creases_of, end_where_recrossed
+from meshdrape.weave.start import part_under
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -110,24 +109,7 @@ def drape(
         If the net would not fit in the memory.
     """
     threads = threads or os.cpu_count() or 1
-    if engine not in ENGINES:
-        msg = f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}"
-        raise StartError(msg)
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
-    size = mould.surface.diagonal
-    if longest > size:
-        msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
-        raise FabricError(msg)
-    shortest = min(fabric.warp_spacing, fabric.weft_spacing)
-    if shortest < ROUND_OFF * size:
-        msg = (
-            f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"
-        )
-        raise FabricError(msg)
-    extent = _checked_extent(extent)
-    if stop_at is not None and not stop_at > 0:
-        msg = f"the cloth cannot stop at a shear of {math.degrees(stop_at):g} degrees; give one above 0"
-        raise StartError(msg)
+    _check_request(mould, fabric, engine, extent, stop_at)
     given = prescribe(warp_turn, weft_turn, warp_path, weft_path)
     drawn = given.paths[0] if given.paths[0] is not None else given.paths[1]
     whole = mould.surface
@@ -138,6 +120,7 @@ def drape(
     if seed.shape != (3,) or not np.isfinite(seed).all():
         msg = f"seed {seed.tolist()} is not a point; give X,Y,Z in mm"
         raise StartError(msg)
+    longest = max(fabric.warp_spacing, fabric.weft_spacing)
     point, distance = whole.closest_point(seed)
     if distance > longest:
         near = ", ".join(f"{v:.6g}" for v in point.position(whole))
@@ -147,25 +130,19 @@ def drape(
         )
         raise StartError(msg)
     notes = []
-    part, part_face = whole, np.arange(len(whole.faces))
-    if whole.n_components > 1:
-        number = int(whole.face_component[point.face])
-        part, part_face = whole.component(number)
+    part, part_face, point = part_under(whole, point, seed)
+    if part is not whole:
         notes.append(
             f"the mould has {whole.n_components} separate parts; draped the seed's, {len(part.faces)} triangles"
         )
-        point, _ = part.closest_point(seed)
-    turns = turns_on(part, mould.triangle_face[part_face], mould.angle_tolerance, given.turns)
-    tracks: tuple[Track | None, Track | None] = (None, None)
-    if drawn is not None:
-        called = "the mould" if part is whole else "the part of the mould it is drawn on"
-        tracks, point = tracks_on(part, fabric, given.paths, seed if asked else None, direction, called)
+    courses, drawn_point = courses_on(mould, part, part_face, fabric, given, seed if asked else None, direction)
+    if drawn_point is not None:
+        point = drawn_point
         moved = float(np.linalg.norm(point.position(part) - seed))
         if asked and moved > max(distance, 1e-6 * longest):
             notes.append(f"the seed was moved {moved:.4g} mm onto the drawn fibre")
     if direction is None:
         direction = default_direction(part, point.face)
-    courses = (Course(turns[0], tracks[0]), Course(turns[1], tracks[1]))
     laid = lay(
         part,
         fabric,
@@ -181,11 +158,8 @@ def drape(
     surface, lattice, start = laid.surface, laid.lattice, laid.start
     end_where_met(part, surface, fabric, lattice, start)
     if not recrossing:
-        if "_creases" not in vars(part):
-            edges = crease_edges(part, mould.triangle_face[part_face], mould.angle_tolerance)
-            # kept with the surface, as its collar is, for the next drape
-            vars(part)["_creases"] = Creases(part, edges)
-        end_where_recrossed(vars(part)["_creases"], surface, fabric, lattice, start, threads)
+        creases = creases_of(part, mould.triangle_face[part_face], mould.angle_tolerance)
+        end_where_recrossed(creases, surface, fabric, lattice, start, threads)
     trim(surface, fabric, lattice, start, threads)
     frame = surface.unfolding.frame[start.face[0]]
     return Net(
@@ -223,12 +197,31 @@ def default_direction(surface: Surface, face: int) -> FloatArray:
     return np.array([1.0, 0.0, 0.0])
 
 
-def _checked_extent(
+def _check_request(
+    mould: Mould,
+    fabric: Fabric,
+    engine: str,
     extent: tuple[float, float, float, float] | None,
-) -> tuple[float, float, float, float] | None:
-    if extent is None:
-        return None
-    if len(extent) != 4 or not all(length >= 0 for length in extent):
+    stop_at: float | None,
+) -> None:
+    """Raise StartError or FabricError for what no mould could be draped with, or not this one."""
+    if engine not in ENGINES:
+        msg = f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}"
+        raise StartError(msg)
+    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    size = mould.surface.diagonal
+    if longest > size:
+        msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
+        raise FabricError(msg)
+    shortest = min(fabric.warp_spacing, fabric.weft_spacing)
+    if shortest < ROUND_OFF * size:
+        msg = (
+            f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"
+        )
+        raise FabricError(msg)
+    if extent is not None and (len(extent) != 4 or not all(length >= 0 for length in extent)):
         msg = f"extent {tuple(extent)} must be four lengths in mm, none negative: warp-, warp+, weft-, weft+"
         raise StartError(msg)
-    return extent
+    if stop_at is not None and not stop_at > 0:
+        msg = f"the cloth cannot stop at a shear of {math.degrees(stop_at):g} degrees; give one above 0"
+        raise StartError(msg)

@@ -11,7 +11,7 @@ from meshdrape.errors import StartError
 from meshdrape.kernels import locate
 from meshdrape.weave.measures import Measures
 from meshdrape.weave.net import run_kernel
-from meshdrape.weave.refine import refined
+from meshdrape.weave.subdivide import subdivided
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -83,7 +83,7 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
     total = mould.surface.area
     # triangles of the net's own size, unless that is too many: halving leaves about two in three of this area
     longest = max(1.5 * max(fabric.warp_spacing, fabric.weft_spacing), float(np.sqrt(6.0 * total / most_triangles)))
-    vertices, triangles, parent = refined(mould.vertices, mould.triangles, longest, most_triangles)
+    vertices, triangles, parent = subdivided(mould.vertices, mould.triangles, longest, most_triangles)
     order = np.argsort(parent, kind="stable")
     triangles, parent = triangles[order], parent[order]
     a, b, c = (vertices[triangles[:, k]] for k in range(3))

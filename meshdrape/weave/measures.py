@@ -100,7 +100,10 @@ class Measures:
         )
 
     def node_shear(self, first: int, last: int) -> FloatArray:
-        """Signed shear at the nodes of the rows first <= i < last: the mean of the cells around each, rad."""
+        """Signed shear at the nodes of the rows first <= i < last, (last - first, n_weft) rad.
+
+        The mean of the cells around each; NaN where there is none.
+        """
         n_warp, n_weft = self.net.shape
         total = np.zeros((last - first, n_weft))
         count = np.zeros((last - first, n_weft))

@@ -118,15 +118,6 @@ class Net:
             emit.positions(self.surface.unfolding, self.lattice, a, out[a - first : b - first])
         return out
 
-    def positions_at(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> FloatArray:
-        """Single nodes in space, (n, 3) mm; NaN where there is no node."""
-        frame = self.surface.unfolding.frame
-        placed = self.lattice.status[i, j] <= NodeStatus.OFF_MOULD
-        face = frame[np.where(placed, self.lattice.face[i, j], 0)]
-        xy = self.lattice.xy[i, j]
-        found = face[:, :3] + xy[:, :1] * face[:, 3:6] + xy[:, 1:] * face[:, 6:9]
-        return np.asarray(np.where(placed[:, None], found, np.nan))
-
     def directions(self, first: int, last: int) -> tuple[FloatArray, FloatArray]:
         """Unit tangents of warp and weft at the nodes of the rows first <= i < last, each (last - first, n_weft, 3).
 

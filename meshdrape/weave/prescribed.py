@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,9 +13,12 @@ from meshdrape.errors import StartError
 from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.fibre import FAMILY, Track, Turn
+from meshdrape.weave.fibre import FAMILY, Course, Track, Turn
 from meshdrape.weave.path import crossings, draw
 from meshdrape.weave.start import unit_direction
+
+if TYPE_CHECKING:
+    from meshdrape.mould import Mould
 
 FloatArray = NDArray[np.float64]
 
@@ -46,19 +50,19 @@ class StartFibres:
 
     @property
     def turns(self) -> tuple[float | None, float | None]:
-        """Of warp and weft."""
+        """Of warp and weft, rad."""
         return self.warp_turn, self.weft_turn
 
     @property
     def paths(self) -> tuple[FloatArray | None, FloatArray | None]:
-        """Of warp and weft."""
+        """Of warp and weft, (n, 3) mm each."""
         return self.warp_path, self.weft_path
 
 
 def prescribe(
     warp_turn: float | None, weft_turn: float | None, warp_path: ArrayLike | None, weft_path: ArrayLike | None
 ) -> StartFibres:
-    """What was asked for, checked as far as it can be without the mould.
+    """What was asked for, turns in rad and paths (n, 3) in mm, checked as far as it can be without the mould.
 
     Raises
     ------
@@ -93,6 +97,42 @@ def _points(path: ArrayLike, name: str) -> FloatArray:
         raise StartError(msg)
     points.setflags(write=False)
     return points
+
+
+def courses_on(
+    mould: Mould,
+    part: Surface,
+    part_face: NDArray[np.int64],
+    fabric: Fabric,
+    given: StartFibres,
+    seed: FloatArray | None,
+    direction: ArrayLike | None,
+) -> tuple[tuple[Course, Course], SurfacePoint | None]:
+    """The courses of warp and weft on the draped part of a mould, and the seed on a drawn fibre; None of none.
+
+    Parameters
+    ----------
+    mould : Mould
+    part : Surface
+    part_face : (m,) int
+        The mould's triangle behind each face of the part.
+    fabric : Fabric
+    given : StartFibres
+    seed, direction
+        See :func:`tracks_on`.
+
+    Raises
+    ------
+    StartError
+        If a path cannot be drawn, or two do not cross.
+    """
+    turns = turns_on(part, mould.triangle_face[part_face], mould.angle_tolerance, given.turns)
+    tracks: tuple[Track | None, Track | None] = (None, None)
+    point = None
+    if any(path is not None for path in given.paths):
+        called = "the mould" if part is mould.surface else "the part of the mould it is drawn on"
+        tracks, point = tracks_on(part, fabric, given.paths, seed, direction, called)
+    return (Course(turns[0], tracks[0]), Course(turns[1], tracks[1])), point
 
 
 def tracks_on(

@@ -15,10 +15,10 @@ from meshdrape.kernels.tables import Lattice
 from meshdrape.surface import Surface
 from meshdrape.weave.collar import extended
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.fibre import Course, Track
 from meshdrape.weave.generators import free_memory, lay_generators, start_fibres
 from meshdrape.weave.net import Net, run_kernel
-from meshdrape.weave.prescribed import StartFibres, tracks_on, turns_on
+from meshdrape.weave.prescribed import StartFibres, courses_on
+from meshdrape.weave.start import part_under
 from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:
@@ -109,17 +109,11 @@ def rebuild(mould: Mould, stored: StoredNodes, threads: int = 1) -> Rebuilt:
     fabric, (i0, j0) = stored.fabric, stored.seed_index
     n_warp, n_weft = stored.node_status.shape
     whole = mould.surface
-    point, distance = whole.closest_point(stored.seed)
-    part, part_face = whole, np.arange(len(whole.faces))
-    if whole.n_components > 1:
-        part, part_face = whole.component(int(whole.face_component[point.face]))
-        point, _ = part.closest_point(stored.seed)
+    nearest, distance = whole.closest_point(stored.seed)
+    part, part_face, point = part_under(whole, nearest, stored.seed)
     given = stored.start_fibres
-    turns = turns_on(part, mould.triangle_face[part_face], mould.angle_tolerance, given.turns)
-    tracks: tuple[Track | None, Track | None] = (None, None)
-    if any(path is not None for path in given.paths):
-        tracks, point = tracks_on(part, fabric, given.paths, np.asarray(stored.seed), stored.direction, "the mould")
-    courses = (Course(turns[0], tracks[0]), Course(turns[1], tracks[1]))
+    courses, drawn_point = courses_on(mould, part, part_face, fabric, given, stored.seed, stored.direction)
+    point = drawn_point or point
     surface = extended(part, stored.collar_depth)
     counts = [n_warp - 1 - i0, n_weft - 1 - j0, i0, j0]
     room = (

@@ -96,11 +96,6 @@ class Recheck:
     failures: tuple[str, ...]
     seconds: float
 
-    @property
-    def holds(self) -> bool:
-        """Whether the net is what it says."""
-        return not self.failures
-
 
 def recheck(
     mould: Mould,
@@ -126,6 +121,18 @@ def recheck(
         libigl stops after this long.
     seed : int
         Of the random sample.
+    threads : int
+        For the kernels; the answer does not depend on it.
+
+    Returns
+    -------
+    Recheck
+        Its ``failures`` are empty where the net holds.
+
+    Raises
+    ------
+    StartError
+        If the stored direction is none.
     """
     begun = time.perf_counter()
     rebuilt = rebuild(mould, stored, threads)

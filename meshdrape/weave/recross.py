@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from meshdrape.kernels.recross import MOST, returning_warps, returning_wefts
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
+from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.status import NodeStatus
 
@@ -31,6 +32,21 @@ CORNER = np.radians(45.0)
 MOST_REGIONS = 2000
 # Nodes of a fibre beyond a crease of which the distance from it is taken.
 MOST_LOOKED_AT = 40
+
+
+def creases_of(part: Surface, cad_face: IntArray, angle_tolerance: float | None) -> Creases:
+    """The creases of the draped part of a mould and what lies between them, kept with it for the next drape.
+
+    Parameters
+    ----------
+    part : Surface
+    cad_face, angle_tolerance
+        See :func:`meshdrape.weave.crease.crease_edges`.
+    """
+    kept: dict[str, Creases] = vars(part)
+    if "_creases" not in kept:
+        kept["_creases"] = Creases(part, crease_edges(part, cad_face, angle_tolerance))
+    return kept["_creases"]
 
 
 def end_where_recrossed(

@@ -50,8 +50,8 @@ class SeedStar:
 def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initial_angle: float) -> SeedStar:
     """Half-fibres of a seed: the warp along `direction`, projected, the weft at the initial angle from it.
 
-    The star of the seed is unfolded to its total angle A; counter-clockwise about the normal the half-fibres follow
-    at initial_angle A / 2 pi, A / 2 and A / 2 + initial_angle A / 2 pi.
+    `direction` is a vector (3,) of any length. The star of the seed is unfolded to its total angle A; counter-clockwise
+    about the normal the half-fibres follow at initial_angle A / 2 pi, A / 2 and A / 2 + initial_angle A / 2 pi.
 
     Raises
     ------
@@ -75,6 +75,30 @@ def seed_star(surface: Surface, point: SurfacePoint, direction: ArrayLike, initi
             return _in_face(surface, face, x, y, along, initial_angle)
     x, y = point.in_frame(surface)
     return _in_face(surface, face, x, y, along, initial_angle)
+
+
+def part_under(whole: Surface, point: SurfacePoint, seed: ArrayLike) -> tuple[Surface, NDArray[np.int64], SurfacePoint]:
+    """The connected part that a point of a surface lies on.
+
+    Parameters
+    ----------
+    whole : Surface
+    point : SurfacePoint
+        The point of it nearest to the seed.
+    seed : (3,) float, mm
+
+    Returns
+    -------
+    part : Surface
+    part_face : (m,) int64
+        The face of the whole behind each of its faces.
+    point : SurfacePoint
+        The same point of the part.
+    """
+    if whole.n_components == 1:
+        return whole, np.arange(len(whole.faces)), point
+    part, part_face = whole.component(int(whole.face_component[point.face]))
+    return part, part_face, part.closest_point(np.asarray(seed, dtype=np.float64))[0]
 
 
 def unit_direction(direction: ArrayLike) -> FloatArray:

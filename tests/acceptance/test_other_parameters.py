@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from creased import facets, lay
-from lattice import cells_at, nodes_at, offsets, shear_deg
+from lattice import cells_at, nodes_at, planar_lattice, shear_deg
 from moulds import cone, cube_corner, cylinder, hypar, icosphere, rotation, wing_spar
 from references import (
     Crease,
@@ -161,7 +161,7 @@ def test_cone(half, azimuth, eta, spacing):
         cone(half_angle=half, n=2400).reversed().mould(), meshdrape.Fabric(spacing), 1000 * ruling,
         np.cos(eta) * ruling + np.sin(eta) * across, extent=(400, 400, 400, 400),
     )  # fmt: skip
-    reference = rolled_on_cone(_flat(net, eta), half, 1000.0, azimuth)
+    reference = rolled_on_cone(planar_lattice(net, (0, 0, 0), eta), half, 1000.0, azimuth)
     _held(net, reference, 2e-2)
 
 
@@ -176,13 +176,7 @@ def test_cylinder(radius, eta, spacing):
         cylinder(radius=radius, n=2400).reversed().mould(), meshdrape.Fabric(spacing), seed,
         np.cos(eta) * np.array([0, 0, 1.0]) + np.sin(eta) * across, extent=(400, 400, 400, 400),
     )  # fmt: skip
-    _held(net, rolled_on_cylinder(_flat(net, eta), radius, azimuth), 2e-2)
-
-
-def _flat(net, eta):
-    i, j = offsets(net)
-    u, v = i * net.fabric.warp_spacing, j * net.fabric.weft_spacing
-    return np.stack([u * np.cos(eta) - v * np.sin(eta), u * np.sin(eta) + v * np.cos(eta)], axis=-1)
+    _held(net, rolled_on_cylinder(planar_lattice(net, (0, 0, 0), eta), radius, azimuth), 2e-2)
 
 
 def _held(net, reference, tolerance):

@@ -8,7 +8,8 @@ import shutil
 
 import numpy as np
 import pytest
-from command import CAD, SAMPLES, binary_stl, draped, obj, run
+from command import CAD, SAMPLES, draped, run
+from meshfiles import binary_stl, obj
 from moulds import bumpy, holed_plate, icosphere, plate
 
 import meshdrape

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from command import ascii_stl, binary_stl, obj, off, ply, run
+from command import run
+from meshfiles import binary_stl, obj, off, text_ply, text_stl
 from moulds import Mesh, plate
 
 import meshdrape.output
@@ -32,7 +33,7 @@ FIN = Mesh(
     np.vstack([PLATE.vertices, [[0.0, 0.0, 90.0]]]), np.vstack([PLATE.triangles, [[12, 20, len(PLATE.vertices)]]])
 )
 NOISE = np.random.default_rng(0).bytes(3000)
-MESHES = {"stl": binary_stl(PLATE), "obj": obj(PLATE), "off": off(PLATE), "ply": ply(PLATE)}
+MESHES = {"stl": binary_stl(PLATE), "obj": obj(PLATE), "off": off(PLATE), "ply": text_ply(PLATE)}
 SUFFIXES = ("step", "stp", "brep", "stl", "obj", "ply", "off", "py")
 
 
@@ -75,11 +76,11 @@ CONTENT = {
     "nothing-in-it.stl": b"solid a\nendsolid a\n",
     "nothing.obj": obj(Mesh(PLATE.vertices, PLATE.triangles[:0])),
     "nothing.off": off(Mesh(PLATE.vertices, PLATE.triangles[:0])),
-    "nothing.ply": ply(Mesh(PLATE.vertices, PLATE.triangles[:0])),
+    "nothing.ply": text_ply(Mesh(PLATE.vertices, PLATE.triangles[:0])),
     "nan.obj": with_nan(obj(PLATE)),
     "nan.off": with_nan(off(PLATE)),
-    "nan.ply": with_nan(ply(PLATE)),
-    "nan-in-words.stl": with_nan(ascii_stl(PLATE)),
+    "nan.ply": with_nan(text_ply(PLATE)),
+    "nan-in-words.stl": with_nan(text_stl(PLATE)),
     "nan.stl": MESHES["stl"][:96] + np.float32(np.nan).tobytes() + MESHES["stl"][100:],
     "index.obj": MESHES["obj"] + b"f 1 2 940\n",
     "index.off": MESHES["off"].replace(b"\n3 0 ", b"\n3 940 ", 1),

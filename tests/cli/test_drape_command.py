@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from command import CAD, SAMPLES, binary_stl, draped, run
+from command import CAD, SAMPLES, draped, run
+from meshfiles import binary_stl
 from moulds import cap, grid, icosphere, plate
 
 import meshdrape
@@ -121,23 +119,9 @@ def test_net_file_holds_the_net_of_the_public_names(whole, through_api):
     assert stored.mould_file.resolve() == net.mould.source.resolve()
 
 
-@pytest.fixture
-def opened_in_meshlab():
-    import pymeshlab
-
-    alive = []  # a mesh is a view into its set
-
-    def load(path):
-        alive.append(pymeshlab.MeshSet())
-        alive[-1].load_new_mesh(str(path))
-        return alive[-1].current_mesh()
-
-    return load
-
-
-def test_net_file_opens_in_meshlab(whole, opened_in_meshlab):
+def test_net_file_opens_in_meshlab(whole, meshlab):
     stored = meshdrape.read_net(whole)
-    mesh = opened_in_meshlab(whole)
+    mesh = meshlab(whole)
     there = np.isfinite(stored.node_position[..., 0])
     np.testing.assert_allclose(mesh.vertex_matrix(), stored.node_position[there], rtol=0, atol=1e-9)
     shear = np.degrees(np.abs(stored.cell_shear[np.isfinite(stored.cell_shear)]))
@@ -148,8 +132,8 @@ def test_net_file_opens_in_meshlab(whole, opened_in_meshlab):
     assert mesh.has_face_color()
 
 
-def test_companions_open_in_meshlab(whole, through_api, opened_in_meshlab):
-    mould, fibres = (opened_in_meshlab(whole.with_suffix(suffix)) for suffix in (".mould.ply", ".fibres.ply"))
+def test_companions_open_in_meshlab(whole, through_api, meshlab):
+    mould, fibres = (meshlab(whole.with_suffix(suffix)) for suffix in (".mould.ply", ".fibres.ply"))
     field = read_off(through_api, (0, 1, 0))
     np.testing.assert_allclose(mould.vertex_matrix(), field.vertices, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(mould.face_matrix(), field.triangles)
@@ -398,51 +382,3 @@ def test_engine_of_reference_agrees_with_the_fast_one(capfd, dome, tmp_path):
     fast, libigl = (meshdrape.read_net(tmp_path / f"{engine}.ply") for engine in ("fast", "libigl"))
     np.testing.assert_array_equal(fast.node_status, libigl.node_status)
     np.testing.assert_allclose(fast.node_position, libigl.node_position, rtol=0, atol=1e-9 * SPACING)
-
-
-# --- light on its feet ------------------------------------------------------------------------------------------------
-
-HEAVY = ("numpy", "scipy", "numba", "cadquery", "OCP", "vtkmodules", "pymeshlab", "igl", "rich")
-
-
-def imported(code: str) -> set[str]:
-    """Top-level packages a fresh interpreter has imported after the code."""
-    tail = "\nimport sys\nsys.stderr.write(' '.join({name.partition('.')[0] for name in sys.modules}))"
-    process = subprocess.run(
-        [sys.executable, "-c", code + tail],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "PYTHONPATH": str(Path(meshdrape.__file__).parents[1])},
-    )
-    return set(process.stderr.split())
-
-
-@pytest.mark.parametrize("words_", ["--help", "--version", "drape --help", "inspect --help", "drape", "drape --wrong"])
-def test_help_and_usage_import_nothing_heavy(words_):
-    code = (
-        "import contextlib, io\nfrom meshdrape.cli.main import main\n"
-        "with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):\n"
-        f"    main({words_.split()!r})"
-    )
-    assert imported(code).isdisjoint(HEAVY)
-
-
-def test_importing_the_package_is_light():
-    assert imported("import meshdrape").isdisjoint(HEAVY)
-    assert imported("import meshdrape; dir(meshdrape)").isdisjoint(HEAVY)
-
-
-@pytest.mark.parametrize(
-    ("words_", "text"),
-    [
-        ("--help", "drape     lay a fabric on a mould and write the net"),
-        ("--version", f"meshdrape {meshdrape.__version__}"),
-        ("drape --help", "--initial-angle DEG"),
-        ("inspect --help", "--angle-tolerance DEG"),
-    ],
-)
-def test_help_says(capfd, words_, text):
-    outcome = run(capfd, *words_.split())
-    assert (outcome.code, outcome.err) == (0, "")
-    assert text in outcome.out

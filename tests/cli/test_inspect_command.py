@@ -6,7 +6,8 @@ import json
 
 import numpy as np
 import pytest
-from command import CAD, SAMPLES, binary_stl, obj, run
+from command import CAD, SAMPLES, run
+from meshfiles import binary_stl, obj
 from moulds import Mesh, plate
 
 import meshdrape

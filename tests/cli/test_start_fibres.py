@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from command import binary_stl, draped, run
+from command import draped, run
+from meshfiles import binary_stl
 from moulds import grid, wing_spar
 
 import meshdrape

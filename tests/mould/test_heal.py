@@ -4,17 +4,13 @@ import sys
 
 import numpy as np
 import pytest
-from moulds import Mesh, bumpy, cut_plate, grid, holed_plate, icosphere, plate
+from moulds import Mesh, bumpy, cut_plate, grid, holed_plate, icosphere, moebius, plate, tiles
 
 from meshdrape.errors import MissingLibraryError, MouldError, missing_library
 from meshdrape.mould.check import FaultKind, examine
 from meshdrape.mould.heal import HealReport, heal
 from meshdrape.mould.mould import Mould
 from meshdrape.surface import Surface
-
-
-def square(n: int = 4) -> Mesh:
-    return grid(np.arange(n + 1), np.arange(n + 1), lambda x, y: (x, y, 0))
 
 
 def torn(mesh: Mesh, gap: float) -> Mesh:
@@ -68,7 +64,7 @@ def _nearest(points, others):
 
 
 def test_a_tear_wider_than_close_stays_open():
-    mesh = square()
+    mesh = tiles()
     left = mesh.vertices[mesh.triangles].mean(axis=1)[:, 0] < 2
     right = mesh.kept(~left).moved(np.eye(3), (2e-4, 0, 0))
     vertices, _, report = heal(*mesh.kept(left).joined(right))
@@ -86,7 +82,7 @@ def test_small_triangles_are_not_merged_away():
 
 
 def test_duplicates_and_collapsed_triangles_are_removed():
-    mesh = square()
+    mesh = tiles()
     extra = [mesh.triangles[5], mesh.triangles[9, ::-1], [7, 7, 8], [3, 3, 3]]
     vertices, triangles, report = heal(mesh.vertices, np.concatenate([mesh.triangles, extra]))
     assert corners(vertices, triangles) == corners(*mesh)
@@ -111,7 +107,7 @@ def test_reversed_triangles_are_turned_to_the_majority(which):
 
 
 def test_each_component_is_turned_by_itself():
-    two = square().joined(square().reversed().moved(np.eye(3), (10, 0, 0)))
+    two = tiles().joined(tiles().reversed().moved(np.eye(3), (10, 0, 0)))
     wrong = two.triangles.copy()
     wrong[[0, 40]] = wrong[[0, 40]][:, ::-1]
     vertices, triangles, report = heal(two.vertices, wrong)
@@ -121,7 +117,7 @@ def test_each_component_is_turned_by_itself():
 
 @pytest.mark.parametrize("height", [0.5, 3.0])
 def test_a_fin_is_taken_off_and_the_sheet_it_stood_on_is_whole(height):
-    mesh = square()
+    mesh = tiles()
     vertices = np.concatenate([mesh.vertices, [[1.5, 1.5, height]]])
     healed, triangles, report = heal(vertices, np.concatenate([[[6, 12, 25]], mesh.triangles]))
     assert corners(healed, triangles) == corners(*mesh)
@@ -191,7 +187,7 @@ def test_everything_at_once():
 
 def test_what_is_lost_counts_as_moved():
     """Two fins are lost: the farther counts, though nothing of the new surface is far from the old."""
-    mesh = square()
+    mesh = tiles()
     vertices = np.concatenate([mesh.vertices, [[1.5, 1.5, 100], [1.5, 1.5, -40]]])
     healed, triangles, report = heal(vertices, np.concatenate([mesh.triangles, [[6, 12, 25], [6, 12, 26]]]))
     assert corners(healed, triangles) == corners(*mesh)
@@ -214,18 +210,6 @@ def test_numbers_after_another_order_of_the_triangles():
 
 
 # --- what cannot be healed ----------------------------------------------------------------------------------------
-
-
-def moebius(cells: int = 40) -> Mesh:
-    t = np.arange(cells) * 2 * np.pi / cells
-    edges = [
-        np.stack([(1 + s * np.cos(t / 2)) * np.cos(t), (1 + s * np.cos(t / 2)) * np.sin(t), s * np.sin(t / 2)], 1)
-        for s in (-0.3, 0.3)
-    ]
-    i = np.arange(cells - 1)
-    inner = [np.stack([i, i + 1, cells + i + 1], 1), np.stack([i, cells + i + 1, cells + i], 1)]
-    last = [[cells - 1, cells, 0], [cells - 1, 0, 2 * cells - 1]]
-    return Mesh(np.concatenate(edges), np.concatenate([*inner, last]))
 
 
 @pytest.mark.parametrize(
@@ -276,6 +260,6 @@ def test_a_library_of_the_system_that_is_missing_is_named_with_its_package(monke
     monkeypatch.delitem(sys.modules, "pymeshlab", raising=False)
     monkeypatch.setattr(sys, "meta_path", [Missing(), *sys.meta_path])
     with pytest.raises(MissingLibraryError) as caught:
-        heal(*square())
+        heal(*tiles())
     assert str(caught.value) == line
     assert str(missing_library(ImportError(reason))) == line

@@ -5,19 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from brep_shapes import SAMPLES
+from meshfiles import off, stored
 from moulds import Mesh, icosphere, plate
 
 from meshdrape import MeshdrapeError, read_mould
 from meshdrape.errors import MouldError
 from meshdrape.mould.inspect import inspect_mould
-
-
-def off(path, mesh):
-    rows = [f"OFF\n{len(mesh.vertices)} {len(mesh.triangles)} 0"]
-    rows += [" ".join(map(repr, row)) for row in np.asarray(mesh.vertices, dtype=float).tolist()]
-    rows += ["3 " + " ".join(map(str, row)) for row in mesh.triangles.tolist()]
-    path.write_text("\n".join(rows) + "\n")
-    return path
 
 
 def test_closed_solid():
@@ -50,7 +43,7 @@ def test_script_with_parameters(tmp_path):
 
 @pytest.mark.parametrize("mesh", [plate(), icosphere(1)])
 def test_sound_mesh(tmp_path, mesh):
-    found = inspect_mould(off(tmp_path / "a.off", mesh), unit="cm")
+    found = inspect_mould(stored(tmp_path, "a.off", off(mesh)), unit="cm")
     assert found.faults == ()
     assert found.cad_faces == ()
     assert not found.closed
@@ -61,7 +54,7 @@ def test_sound_mesh(tmp_path, mesh):
 def test_faults_of_a_mesh(tmp_path):
     mesh = plate()
     turned = Mesh(mesh.vertices, np.vstack([mesh.triangles[1:], mesh.triangles[:1, ::-1]]))
-    found = inspect_mould(off(tmp_path / "a.off", turned))
+    found = inspect_mould(stored(tmp_path, "a.off", off(turned)))
     assert found.mould is None
     assert sum(fault.count for fault in found.faults) > 0
     with pytest.raises(MouldError):
@@ -80,4 +73,4 @@ def test_a_mesh_that_is_none_is_named(tmp_path, content):
 
 def test_unknown_unit(tmp_path):
     with pytest.raises(MouldError, match="unknown unit 'ell'; the units are"):
-        inspect_mould(off(tmp_path / "a.off", plate()), unit="ell")
+        inspect_mould(stored(tmp_path, "a.off", off(plate())), unit="ell")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError, MeshdrapeError, NetError
-from meshdrape.output import net_ply, read_net, write_ply
+from meshdrape.output import net_elements, read_net, write_ply
 from meshdrape.output.colour import shear_colour
 from meshdrape.output.ply_reader import read_ply
 from meshdrape.weave.status import NodeStatus
@@ -177,7 +177,7 @@ def replace_mould(net, mould):
 def test_blocks_make_no_difference(flat, tmp_path, monkeypatch):
     net, measures = flat
     write_ply(net, tmp_path / "one.ply", measures, foretold(measures))
-    monkeypatch.setattr(net_ply, "_NODES_PER_BLOCK", 64)
+    monkeypatch.setattr(net_elements, "NODES_PER_BLOCK", 64)
     write_ply(net, tmp_path / "many.ply", measures, foretold(measures))
     assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "many.ply").read_bytes()
     assert (read_net(tmp_path / "many.ply").node_status == net.node_status).all()

@@ -16,6 +16,8 @@ from meshdrape.output.scene import drawn_cells, drawn_fibres
 from meshdrape.output.stage import Stage
 from meshdrape.weave.status import NodeStatus
 
+HELPERS = [str(folder) for folder in Path(__file__).parents[:2]]  # where a process of its own finds the known nets
+
 
 @pytest.fixture(scope="module")
 def pixels(tmp_path_factory):
@@ -76,16 +78,16 @@ def test_nothing_is_said_on_stderr_and_nothing_drawn_is_imported_early(tmp_path)
     """In a process of its own: VTK comes only with the drawing, and nothing else does."""
     script = """
 import sys
-sys.path.insert(0, sys.argv[2])
+sys.path[:0] = sys.argv[2:]
 import meshdrape.output
 assert not [name for name in sys.modules if name.startswith(("vtk", "pyvista", "matplotlib"))]
-from conftest import flat_net, measured
+from known_nets import flat_net, measured
 net = flat_net()
 meshdrape.output.draw_net(net, measured(net), sys.argv[1])
 assert not [name for name in sys.modules if name.startswith(("pyvista", "matplotlib"))]
 """
     run = subprocess.run(
-        [sys.executable, "-c", script, str(tmp_path / "net.png"), str(Path(__file__).parent)],
+        [sys.executable, "-c", script, str(tmp_path / "net.png"), *HELPERS],
         capture_output=True,
         text=True,
         check=False,
@@ -97,8 +99,8 @@ assert not [name for name in sys.modules if name.startswith(("pyvista", "matplot
 def test_a_machine_without_opengl_is_told_what_to_install(tmp_path):
     script = """
 import sys
-sys.path.insert(0, sys.argv[2])
-from conftest import flat_net, measured
+sys.path[:0] = sys.argv[2:]
+from known_nets import flat_net, measured
 from meshdrape.errors import MissingLibraryError
 from meshdrape.output import draw_net
 net = flat_net()
@@ -108,7 +110,7 @@ except MissingLibraryError as error:
     print(error)
 """
     run = subprocess.run(
-        [sys.executable, "-c", script, str(tmp_path / "net.png"), str(Path(__file__).parent)],
+        [sys.executable, "-c", script, str(tmp_path / "net.png"), *HELPERS],
         capture_output=True,
         text=True,
         check=False,

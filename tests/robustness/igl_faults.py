@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from meshfiles import obj, off, stored, text_ply
 from moulds import Mesh, cube, grid
 
 import meshdrape
@@ -116,26 +117,19 @@ def faults() -> dict[str, Fault]:
 
 
 def _written(mesh: Mesh, suffix: str, folder: Path) -> Path:
-    path = folder / f"mould{suffix}"
-    v, t = mesh.vertices.tolist(), mesh.triangles.tolist()
-    if suffix == ".obj":
-        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in v] + ["f " + " ".join(str(i + 1) for i in f) for f in t]
-    elif suffix == ".off":
-        lines = ["OFF", f"{len(v)} {len(t)} 0", *(f"{x!r} {y!r} {z!r}" for x, y, z in v)]
-        lines += ["3 " + " ".join(map(str, f)) for f in t]
-    elif suffix == ".ply":
-        lines = ["ply", "format ascii 1.0", f"element vertex {len(v)}", *(f"property double {k}" for k in "xyz")]
-        lines += [f"element face {len(t)}", "property list uchar int vertex_indices", "end_header"]
-        lines += [f"{x!r} {y!r} {z!r}" for x, y, z in v] + ["3 " + " ".join(map(str, f)) for f in t]
-    else:
-        lines = ["solid x"]
-        for face in t:
-            lines += ["facet normal 0 0 1", "outer loop"]
-            lines += ["vertex {!r} {!r} {!r}".format(*v[i]) for i in face if -len(v) <= i < len(v)]
-            lines += ["endloop", "endfacet"]
-        lines += ["endsolid x"]
-    path.write_text("\n".join(lines) + "\n")
-    return path
+    write = {".obj": obj, ".off": off, ".ply": text_ply, ".stl": _stl}[suffix]
+    return stored(folder, f"mould{suffix}", write(mesh))
+
+
+def _stl(mesh: Mesh) -> bytes:
+    """In text; corners that are no vertex are left out."""
+    v = mesh.vertices.tolist()
+    lines = ["solid x"]
+    for face in mesh.triangles.tolist():
+        lines += ["facet normal 0 0 1", "outer loop"]
+        lines += ["vertex {!r} {!r} {!r}".format(*v[i]) for i in face if -len(v) <= i < len(v)]
+        lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid x", ""]).encode()
 
 
 def _drape(mould: meshdrape.Mould, fault: Fault, engine: str) -> object:

@@ -1,7 +1,6 @@
 """Files damaged in every way: exit 2 and one line, or a right result. No traceback, no hang, no memory without end."""
 
 import resource
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -9,30 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from damage import DAMAGE
+from meshfiles import binary_ply, binary_stl, obj, off, text_ply, text_stl
 from moulds import bumpy
 
 import meshdrape
 from meshdrape.cli.main import main
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
-from command import CAD, SAMPLES, ascii_stl, binary_stl, obj, off, ply
-
+ROOT = Path(__file__).resolve().parents[2]
 MESH = bumpy(1, n=4)
 CAD_DAMAGE = ("truncated", "truncated_near_the_end", "flipped", "cut_out", "noise", "zeros", "another_code", "nested")
 SECONDS = 40.0
 MORE_MEMORY = 600  # MiB
-
-
-def binary_ply(order: str) -> bytes:
-    code = {"little": "<", "big": ">"}[order]
-    rows = np.zeros(len(MESH.triangles), dtype=[("n", "u1"), ("corner", f"{code}i4", (3,))])
-    rows["n"], rows["corner"] = 3, MESH.triangles
-    head = (
-        f"ply\nformat binary_{order}_endian 1.0\nelement vertex {len(MESH.vertices)}\nproperty double x\n"
-        f"property double y\nproperty double z\nelement face {len(rows)}\n"
-        "property list uchar int vertex_indices\nend_header\n"
-    )
-    return head.encode() + MESH.vertices.astype(f"{code}f8").tobytes() + rows.tobytes()
 
 
 def net_ply(folder: Path) -> bytes:
@@ -50,12 +36,12 @@ def brep(folder: Path) -> bytes:
 
 MESHES: dict[str, Callable[[], bytes]] = {
     "binary.stl": lambda: binary_stl(MESH),
-    "text.stl": lambda: ascii_stl(MESH),
+    "text.stl": lambda: text_stl(MESH),
     "mesh.obj": lambda: obj(MESH),
     "mesh.off": lambda: off(MESH),
-    "text.ply": lambda: ply(MESH),
-    "little.ply": lambda: binary_ply("little"),
-    "big.ply": lambda: binary_ply("big"),
+    "text.ply": lambda: text_ply(MESH),
+    "little.ply": lambda: binary_ply(MESH),
+    "big.ply": lambda: binary_ply(MESH, ">"),
 }
 
 
@@ -116,7 +102,7 @@ def test_cad_file(capfd, tmp_path, name):
     if name.endswith(".brep"):
         whole = brep(tmp_path)
     else:
-        whole = ((SAMPLES if name.endswith(".step") else CAD) / name).read_bytes()
+        whole = (ROOT / ("samples" if name.endswith(".step") else "cad") / name).read_bytes()
     path = tmp_path / f"damaged{Path(name).suffix}"
     path.write_bytes(whole)
     assert inspected(path, capfd) == 0

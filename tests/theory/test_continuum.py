@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rates import orders
 
 from meshdrape.errors import DesignError, NetError
 from meshdrape.theory import (
@@ -48,10 +49,6 @@ MOULD = HeightField(
     ),
     lambda x, y: (-7.334 + 18.516 * x + 17.778 * y, -4.4 + 17.778 * x, -7.5 + 25.926 * y),
 )
-
-
-def orders(error):
-    return np.log2(np.array(error[:-1]) / error[1:])
 
 
 def net_of(field, make, extent, cells, levels=1):

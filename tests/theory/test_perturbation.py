@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rates import orders
 
 from meshdrape.theory import (
     Fold,
@@ -20,10 +21,6 @@ from meshdrape.theory import (
 )
 
 WING = real_wing()
-
-
-def orders(error):
-    return np.log2(np.array(error[:-1]) / error[1:])
 
 
 def test_approach_solves_the_link_it_comes_from():

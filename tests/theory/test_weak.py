@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rates import orders
 
 from meshdrape.theory import (
     Fold,
@@ -23,10 +24,6 @@ from meshdrape.theory import (
 
 EPSILON = (0.01, 0.005, 0.0025)
 SHAPES = [(1, 0, 1), (1, 1, 1), (1, 0.5, 0.7), (0.4, -0.6, 0.3)]
-
-
-def orders(error):
-    return np.log2(np.array(error[:-1]) / error[1:])
 
 
 def solved(field, make):

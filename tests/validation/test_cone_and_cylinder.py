@@ -7,7 +7,7 @@ at right angles. The cone's nodes are closed forms by unrolling.
 
 import numpy as np
 import pytest
-from lattice import nodes_at, offsets, placed, shear_deg
+from lattice import nodes_at, placed, planar_lattice, shear_deg
 from moulds import cone, cylinder
 from references import rolled_on_cone, rolled_on_cylinder
 
@@ -16,14 +16,6 @@ import meshdrape
 HALF_ANGLE, SLANT, AZIMUTH, ETA = np.radians(25), 1000.0, np.radians(20), np.radians(30)
 # spacing 50, fibre 1 at 30 degrees from the ruling; metres
 PUBLISHED_NODES = {(8, 0): (0.440725, 0.369711, 1.233651), (0, 8): (0.092867, 0.356534, 0.790101)}
-
-
-def flat_nodes(net, warp_at):
-    """The unsheared sheet in the unrolled plane, seed at the origin, warp at `warp_at` from x, weft 90 degrees on."""
-    i, j = offsets(net)
-    w, f = net.fabric.warp_spacing, net.fabric.weft_spacing
-    c, s = np.cos(warp_at), np.sin(warp_at)
-    return np.stack([i * w * c - j * f * s, i * w * s + j * f * c], axis=-1)
 
 
 def cone_directions(half_angle, azimuth):
@@ -67,7 +59,7 @@ def test_cone(half_angle, azimuth, eta):
     net = drape_cone(half_angle, azimuth, eta)
     h = 1900 * np.sin(half_angle) * (4.2 / 2400) ** 2 / 8
     radius = 300 * np.sin(half_angle)
-    reference = rolled_on_cone(flat_nodes(net, eta), half_angle, SLANT, azimuth)
+    reference = rolled_on_cone(planar_lattice(net, (0, 0, 0), eta), half_angle, SLANT, azimuth)
     assert on_smooth(net, reference, 500) < 2 * h + h / radius * 500
     assert np.nanmax(np.abs(shear_deg(net))) < 1e-7
 
@@ -81,7 +73,7 @@ def test_cylinder(radius, eta):
     warp = np.cos(eta) * np.array([0, 0, 1.0]) + np.sin(eta) * np.array([-np.sin(azimuth), np.cos(azimuth), 0])
     net = meshdrape.drape(mould, meshdrape.Fabric(50.0), seed, warp)
     h = radius * (3.6 / n) ** 2 / 8
-    reference = rolled_on_cylinder(flat_nodes(net, eta), radius, azimuth)
+    reference = rolled_on_cylinder(planar_lattice(net, (0, 0, 0), eta), radius, azimuth)
     assert on_smooth(net, reference, 500) < 2 * h + h / radius * 500
     assert np.nanmax(np.abs(shear_deg(net))) < 1e-4
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from creased import read
-from lattice import cells_at, nodes_at, offsets, shear_deg
+from lattice import cells_at, nodes_at, planar_lattice, shear_deg
 from references import (
     Crease,
     CreaseNet,
@@ -105,13 +105,6 @@ def test_largest_shear_is_told_by_its_face():
 # --- developable -----------------------------------------------------------------------------------------------------
 
 
-def flat_nodes(net, eta, side):
-    """The unsheared sheet, x along the ruling and y towards larger azimuth; `side` 1 where the weft goes that way."""
-    i, j = offsets(net)
-    u, v = i * net.fabric.warp_spacing, side * j * net.fabric.weft_spacing
-    return np.stack([u * np.cos(eta) - v * np.sin(eta), u * np.sin(eta) + v * np.cos(eta)], axis=-1)
-
-
 def unrolled_held(net, reference, extent, tolerance):
     near = (net.node_status == 0) & (np.linalg.norm(net.node_position - net.seed, axis=-1) < extent)
     assert near.sum() > 100
@@ -129,7 +122,7 @@ def test_cylinder():
     warp = np.cos(eta) * np.array([0, 0, 1.0]) + np.sin(eta) * across
     net = meshdrape.drape(mould, meshdrape.Fabric(25.0), seed, warp)
     side = -1 if outward(mould, seed) @ [x, y, 0] > 0 else 1
-    reference = rolled_on_cylinder(flat_nodes(net, eta, side), radius, azimuth)
+    reference = rolled_on_cylinder(planar_lattice(net, (0, 0, 0), eta, side * np.pi / 2), radius, azimuth)
     reference = reference + np.array([0, 0, seed[2]])
     h = mould.chord_tolerance
     unrolled_held(net, reference, 400, 2 * h + h / radius * 400)
@@ -144,7 +137,7 @@ def test_cone():
     across = np.array([-np.sin(azimuth), np.cos(azimuth), 0])
     net = meshdrape.drape(mould, meshdrape.Fabric(25.0), seed, np.cos(eta) * ruling + np.sin(eta) * across)
     side = -1 if outward(mould, seed) @ np.cross(across, ruling) > 0 else 1
-    reference = rolled_on_cone(flat_nodes(net, eta, side), half, slant, azimuth)
+    reference = rolled_on_cone(planar_lattice(net, (0, 0, 0), eta, side * np.pi / 2), half, slant, azimuth)
     h = mould.chord_tolerance
     unrolled_held(net, reference, 400, 2 * h + h / (300 * s) * 400 + h)
 

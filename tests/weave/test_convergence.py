@@ -5,20 +5,10 @@ import pytest
 from creased import facets, lay
 from lattice import cells_at, nodes_at, offsets
 from moulds import cylinder, hypar, icosphere, rotation
+from rates import rate, table
 from references import Crease, CreaseNet, hypar_net, rolled_on_cylinder, sphere_angle, sphere_net
 
 import meshdrape
-
-
-def rate(steps, errors):
-    """Fitted slope of log(error) over log(step)."""
-    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
-
-
-def table(steps, errors):
-    """What is printed where a rate is missed."""
-    lines = [f"{step:10.3e}  {error:10.3e}" for step, error in zip(steps, errors, strict=True)]
-    return "\n".join(["", "      step       error", *lines, f"rate {rate(steps, errors):.3f}"])
 
 
 def rms(values):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from lattice import cells_at, nodes_at, offsets, placed, statuses_at
 from moulds import Mesh, bumpy, cube_corner, cylinder, grid, hypar, plate
+from rates import orders
 
 import meshdrape
 from meshdrape.weave.balance import balance
@@ -75,7 +76,7 @@ def test_plane_net_is_the_translation_surface_of_both_fibres(name):
     """
     errors = np.array([plane_errors(spacing, PLANE[name]) for spacing in (20.0, 10.0, 5.0)])
     assert errors[:, 1].max() < 1e-4  # chords of 0.28 mm of arcs of 150 mm
-    rate = np.log2(errors[:-1] / errors[1:])
+    rate = orders(errors)
     assert (rate[:, 0] > 1.8).all(), errors
     assert (rate[:, 2] > 1.8).all(), errors
     assert (rate[:, 3] > 0.8).all(), errors

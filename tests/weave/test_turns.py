@@ -22,8 +22,8 @@ def drape(mesh, *args, **options):
     return meshdrape.drape(mesh.mould(), meshdrape.Fabric(20.0), *args, **options)
 
 
-def unfolded(position, angle):
-    """A place of that roof in the plane of its level side."""
+def unfolded(position):
+    """A place on a roof, of any angle, in the plane of its level side."""
     x, y, z = np.moveaxis(position, -1, 0)
     return np.stack([np.where(x <= 0, x, np.hypot(x, z)), y], axis=-1)
 
@@ -38,7 +38,7 @@ def test_it_runs_straight_but_for_the_turn(angle, turn):
     run = 110.0 / start[0]
     beyond = np.array([np.cos(heading + turn), np.sin(heading + turn)])
     length = 20.0 * np.arange(-8, 10)
-    found = unfolded(nodes_at(net, np.arange(-8, 10), 0), angle)
+    found = unfolded(nodes_at(net, np.arange(-8, 10), 0))
     expected = np.where(
         (length < run)[:, None],
         seed + length[:, None] * start,
@@ -73,14 +73,14 @@ def test_bent_edge_is_told_apart_from_those_of_one_spacing():
     assert found.n_arcs == 1
     assert found.max_relative_error < 1e-9
     # the chord of two legs of half a spacing
-    a, b = unfolded(nodes_at(net, np.array([5, 6]), 0), np.pi / 2)
+    a, b = unfolded(nodes_at(net, np.array([5, 6]), 0))
     assert np.linalg.norm(b - a) == pytest.approx(20 * np.cos(0.125), abs=1e-9)
 
 
 def test_crease_within_the_first_edge():
     """The seed lies nearer to the ridge than one spacing: its star is that of the bent edge."""
     net = drape(roof(np.pi / 2), (-7, 3, 0), (1, 0, 0), warp_turn=0.25)
-    found = unfolded(nodes_at(net, np.arange(1, 6), 0), np.pi / 2)
+    found = unfolded(nodes_at(net, np.arange(1, 6), 0))
     length = 20.0 * np.arange(1, 6) - 7
     assert found == pytest.approx(np.stack([length * np.cos(0.25), 3 + length * np.sin(0.25)], axis=1), abs=1e-9)
     assert net.direction == pytest.approx([1, 0, 0], abs=1e-12)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshdrape.output.chart import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, new_figure, png, styled
+from meshdrape.output.chart import BLUE, FAINT, GREEN, INK, ORANGE, VERMILION, mark_locking, new_figure, png, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 _SLACK = 0.02  # of a shear: within this a criterion is neither unsafe nor too strict
 
 
-def draw_criteria(views: tuple[CriteriaView, ...], locking: float) -> bytes:
+def draw_criteria(views: tuple[CriteriaView, ...], locking_angle: float) -> bytes:
     """Equations (20) and (29) against the largest shear of a sheet laid at its best, a panel for each family of f."""
     with styled():
         figure = new_figure(7.8, 5.6)
         axes = figure.subplots(2, 3).ravel()
         for ax, view in zip(axes, views, strict=False):
-            _criteria(ax, view, locking)
+            _criteria(ax, view, locking_angle)
         for ax in axes[len(views) :]:
             ax.axis("off")
         axes[0].set_ylabel("largest shear (degrees)")
@@ -32,7 +32,7 @@ def draw_criteria(views: tuple[CriteriaView, ...], locking: float) -> bytes:
         return png(figure)
 
 
-def _criteria(ax: Axes, view: CriteriaView, locking: float) -> None:
+def _criteria(ax: Axes, view: CriteriaView, locking_angle: float) -> None:
     slope, spread, best, upright = (np.degrees(values) for values in (view.slope, view.spread, view.best, view.upright))
     # amplitudes of a length in mm, of a slope as they are
     length = view.name.startswith(("bump", "sine"))
@@ -47,7 +47,7 @@ def _criteria(ax: Axes, view: CriteriaView, locking: float) -> None:
     ax.plot(c, best, color=INK, linewidth=2.0, label="within reach, best γ")
     ax.plot(view.draped[:, 0] * (1000 if length else 1), np.degrees(view.draped[:, 1]), "o", color=INK, markersize=4.5,
             markerfacecolor="white", clip_on=False, zorder=5, label="draped, best γ")  # fmt: skip
-    ax.axhline(np.degrees(locking), color=VERMILION, linewidth=1.0, label=f"locking, {np.degrees(locking):g}°")
+    mark_locking(ax, locking_angle)
     ax.set_title(view.name)
     ax.set_xlabel("c (mm)" if length else "c")
     ax.set_xlim(0, float(c[-1]))

@@ -35,7 +35,7 @@ def draw_weave(weaves: tuple[WeaveView, ...]) -> bytes:
         figure = new_figure(7.6, 2.85 * len(weaves))
         axes = figure.subplots(len(weaves), 2, squeeze=False)
         for row, weave in zip(axes, weaves, strict=True):
-            for ax, shear in zip(row, (0.0, weave.locking), strict=True):
+            for ax, shear in zip(row, (0.0, weave.locking_angle), strict=True):
                 _ribbons(ax, weave, shear)
                 free = weave.pitch * np.cos(shear) - weave.width
                 gap = "ribbons touch" if abs(free) < 1e-9 else f"gap {100 * free / weave.pitch:.1f} % of the pitch"

@@ -166,7 +166,7 @@ def _pictures(views: Views) -> Iterator[_Picture]:
         "By amplitude, for five families of f on the 14 m wing. (20) is unsafe where f' changes sign, since rows from "
         "the wing see the whole range of ψ, and too strict where f' does not vary or its extremes lie out of each "
         "other's reach. (29) is never below the shear found.",
-        draw_criteria(views.criteria, views.locking),
+        draw_criteria(views.criteria, views.locking_angle),
     )  # fmt: skip
     yield _Picture(
         "convergence", "Convergence in the spacing",

@@ -153,7 +153,14 @@ def drape_fold(
 
 
 def window(net: Net, values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    """Of an array by node or by cell, what lies from the seed on in both directions, padded by NaN to a shape."""
+    """Of an array by node or by cell, what lies from the seed on in both directions, padded by NaN to a shape.
+
+    Parameters
+    ----------
+    net : Net
+    values : (n_warp, n_weft, ...) or (n_warp - 1, n_weft - 1)
+    shape : (n, m, ...)
+    """
     i, j = net.seed_index
     part = values[i : i + shape[0], j : j + shape[1]]
     out = np.full((*shape[:2], *values.shape[2:]), np.nan)

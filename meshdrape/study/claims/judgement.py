@@ -1,6 +1,7 @@
 """How a verdict follows from numbers: one rule a kind of claim, each with its threshold in words.
 
-No verdict is written down anywhere else; a claim hands its measured numbers to one of these rules.
+No verdict is written down anywhere else; a claim hands its measured numbers to one of these rules. They may be arrays
+of any shape, of which the worst entry counts.
 """
 
 from __future__ import annotations
@@ -83,6 +84,12 @@ def signed(with_sign: ArrayLike, modulus: ArrayLike, limit: float, unit: str = "
     return Judgement(verdict, first, unit, _within(limit, unit) + ", with or without the sign")
 
 
+def order_of(errors: ArrayLike) -> float:
+    """The power with which errors (n,) fall whose parameter was halved from one to the next, by the last two."""
+    array = np.abs(np.asarray(errors, dtype=np.float64))
+    return float(np.log2(array[-2] / array[-1])) if array[-1] > 0 else float("inf")
+
+
 def first_order(errors: ArrayLike, least: float, unit: str = "", exact: float = 1e-9) -> Judgement:
     """An expansion whose small parameter was halved from one error to the next.
 
@@ -93,8 +100,8 @@ def first_order(errors: ArrayLike, least: float, unit: str = "", exact: float = 
     if worst <= exact:
         verdict = Verdict.HOLDS
     else:
-        order = float(np.log2(array[-2] / array[-1])) if array[-1] > 0 else float("inf")
-        verdict = Verdict.FIRST_ORDER if np.isfinite(worst) and order >= least else Verdict.WRONG
+        fast = np.isfinite(worst) and order_of(array) >= least
+        verdict = Verdict.FIRST_ORDER if fast else Verdict.WRONG
     return Judgement(verdict, float(array[-1]), unit, f"error falls with a power of {least:g} or more")
 
 

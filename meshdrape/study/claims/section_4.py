@@ -6,7 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.study.claims.claim import Claim, angle, number
-from meshdrape.study.claims.judgement import Verdict, criterion, equality, first_order, occurs, printed, signed
+from meshdrape.study.claims.judgement import (
+    Verdict,
+    criterion,
+    equality,
+    first_order,
+    occurs,
+    order_of,
+    printed,
+    signed,
+)
 from meshdrape.study.claims.runs import FAMILIES, HEIGHT, SPAN, Runs
 from meshdrape.theory import (
     RIBBON_FED,
@@ -117,7 +126,7 @@ def equation_18_expanded(runs: Runs) -> Claim:
     scale = 0.2 / 2.0 ** np.arange(4)
     exact = lateral_approach(scale, 0.5 * scale, 1.0)
     error = exact - lateral_approach_linear(scale, 0.5 * scale, 1.0)
-    order = np.log2(np.abs(exact[-2] / exact[-1])), np.log2(np.abs(error[-2] / error[-1]))
+    order = order_of(exact), order_of(error)
     at_root = float(lateral_approach(SLOPES[-1], 0.1, 1.0))
     found = (
         f"S falls with a power {order[0]:.2f} of both slopes together, the expansion's error with {order[1]:.2f}. With "
@@ -165,10 +174,10 @@ def equation_19(runs: Runs) -> Claim:
         errors.append(float(slope_shear(f, 0.3) - psi))
     real = Fold(runs.wing, runs.wing + linear_deviation(1e-4, SPAN))
     missing = 1 - float(np.abs(real.psi(0.0)) / slope_shear(linear_deviation(1e-4, SPAN), 0.0))
-    order = float(np.log2(abs(errors[-2] / errors[-1])))
     found = (
-        f"Against ψ at the edge, all slopes made small together, the error falls with a power {order:.2f}. On the real "
-        f"wing, f alone made small, {100 * missing:.1f} % too large remain at the root: a factor sqrt(1 + g_w'²)."
+        f"Against ψ at the edge, all slopes made small together, the error falls with a power "
+        f"{order_of(errors):.2f}. On the real wing, f alone made small, {100 * missing:.1f} % too large remain at the "
+        f"root: a factor sqrt(1 + g_w'²)."
     )
     return Claim(
         "(19)",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshdrape.study.claims.claim import Claim, angle, number
-from meshdrape.study.claims.judgement import Verdict, conditional, equality, first_order, occurs
+from meshdrape.study.claims.judgement import Verdict, conditional, equality, first_order, occurs, order_of
 from meshdrape.study.claims.runs import Runs
 from meshdrape.theory import (
     RIBBON_FED,
@@ -68,12 +68,10 @@ def first_nodes(runs: Runs) -> Claim:
         net = discrete_net(fold, 0.01, 0.1)
         r = int(np.flatnonzero(net.sheet.row == -1)[0])
         errors.append(float(np.abs(net.depth[:, r] / net.sheet.spacing - 0.5).max()))
-    order = float(np.log2(errors[-2] / errors[-1]))
     found = (
         f"b = λ/2: the discrete net's first row lies off λ - b by up to {errors[0]:.4f}, {errors[1]:.4f}, "
-        f"{errors[2]:.5f}"
-        f" λ at edge slopes of 0.2, 0.1, 0.05: a power {order:.2f}. A link that hangs upright on both sides of a "
-        f"slanting edge is bent, not straight."
+        f"{errors[2]:.5f} λ at edge slopes of 0.2, 0.1, 0.05: a power {order_of(errors):.2f}. A link that hangs "
+        f"upright on both sides of a slanting edge is bent, not straight."
     )
     return Claim(
         "5", "The first nodes on the spar are at a distance a = λ - b from the edge.", found, first_order(errors, 1.8)

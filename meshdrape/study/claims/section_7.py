@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from meshdrape.mould import Mould
 from meshdrape.study.claims.claim import Claim, angle, number
 from meshdrape.study.claims.drapes import MM, window
-from meshdrape.study.claims.judgement import Verdict, conditional, counterexample, equality, first_order, printed
+from meshdrape.study.claims.judgement import (
+    Verdict,
+    conditional,
+    counterexample,
+    equality,
+    first_order,
+    order_of,
+    printed,
+)
 from meshdrape.study.claims.runs import Runs
 from meshdrape.theory import (
     HeightField,
@@ -40,12 +48,6 @@ def _solved(field: HeightField, start: Callable[..., object], cells: int = 12) -
     """The net over the unit square from two start fibres along x and y, to sixth order."""
     warp, weft = start(field, (1, 0), 1.0), start(field, (0, 1), 1.0)
     return smooth_net(field, warp, weft, (1.0, 1.0), (cells, cells), levels=3)  # type: ignore[arg-type]
-
-
-def order_of(errors: ArrayLike) -> float:
-    """The power with which errors fall whose parameter was halved from one to the next, by the last two."""
-    array = np.abs(np.asarray(errors))
-    return float(np.log2(array[-2] / array[-1])) if array[-1] > 0 else float("inf")
 
 
 def _dome(a: float, b: float, c: float, epsilon: float, cells: int) -> Mould:

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from meshdrape.mould import Mould
 from meshdrape.study.claims.claim import Claim, angle, number
 from meshdrape.study.claims.drapes import MM, ruled_mould
-from meshdrape.study.claims.judgement import Verdict, equality, first_order
+from meshdrape.study.claims.judgement import Verdict, equality, first_order, order_of
 from meshdrape.study.claims.runs import Runs
-from meshdrape.study.claims.section_7 import EPSILON, ROUND_OFF_DEG, order_of
+from meshdrape.study.claims.section_7 import EPSILON, ROUND_OFF_DEG
 from meshdrape.theory import (
     apex_shear,
     pyramid_angle,

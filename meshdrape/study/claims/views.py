@@ -34,7 +34,7 @@ class WeaveView:
 
     pitch: float
     width: float
-    locking: float
+    locking_angle: float
     gaps: tuple[float, float]
 
 
@@ -153,7 +153,7 @@ class Views:
     turn: TurnView
     criteria: tuple[CriteriaView, ...]
     convergence: ConvergenceView
-    locking: float
+    locking_angle: float
 
 
 def make_views(runs: Runs) -> Views:
@@ -170,9 +170,9 @@ def make_views(runs: Runs) -> Views:
     )
 
 
-def _weave(locking: float, pitch: float = 5.0) -> WeaveView:
-    width = width_for(locking, pitch)
-    return WeaveView(pitch, width, locking, (gap(width, pitch, 0.0), gap(width, pitch, locking)))
+def _weave(locking_angle: float, pitch: float = 5.0) -> WeaveView:
+    width = width_for(locking_angle, pitch)
+    return WeaveView(pitch, width, locking_angle, (gap(width, pitch, 0.0), gap(width, pitch, locking_angle)))
 
 
 def sheet_view(draped: DrapedFold) -> SheetView:

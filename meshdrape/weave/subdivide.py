@@ -9,7 +9,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def refined(
+def subdivided(
     vertices: FloatArray, triangles: IntArray, longest: float, most: int
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """The same surface in triangles whose edges are no longer than `longest`, conforming.
