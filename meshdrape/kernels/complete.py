@@ -231,6 +231,11 @@ def complete(
                 bj = j if has_a else pj - sj
                 if not _has(status, bi, bj) or not _leads_from_mould(status, pi, pj, bi - pi, bj - pj):
                     continue
+                if has_a and _has(status, i, j + sj) and _has(status, ia, j + sj):
+                    # cloth on its other side: another sense closes that cell
+                    continue
+                if has_b and _has(status, i + si, j) and _has(status, i + si, jb):
+                    continue
                 beside = status[pi, pj] == PLACED
                 _, _, dx, dy = edge_ends(mesh, net, start, family, bi, bj, step, length)
                 code = straight_on(mesh, detours, net, start, family, pi, pj, step, i, j, dx, dy, length, slack, report)

@@ -215,6 +215,24 @@ def test_concave_outline_does_not_stop_the_sheet(shape, start, degrees):
     assert_covers_the_plane(net, seeds[start], degrees, within)
 
 
+@pytest.mark.parametrize(
+    ("x", "y", "spacing", "seed"),
+    [
+        ([0, 1.1, 1.9, 3.4, 3.9, 5.3, 6.5], [0, 0.7, 1.9, 2.8, 4.2, 5.7], (0.19, 0.36), 4.2),
+        ([0, 1.1, 2.4, 3.8, 5.1, 6.1, 7.6], [0, 0.5, 1.7, 2.7, 3.9, 5.3], (0.11, 0.13), 5.4),
+    ],
+)
+def test_a_ring_cut_open_meets_itself_nowhere(x, y, spacing, seed):
+    """Cloth that comes round from both sides closes cells where the fronts meet; none hangs free beside cloth."""
+    kept = np.array([list(row) for row in ("#####", "....#", "###.#", "#...#", "#...#", "#####")]) == "#"
+    mesh = grid(np.array(x), np.array(y), lambda u, v: (u, v, 0 * u))
+    middle = mesh.vertices[mesh.triangles].mean(axis=1)
+    mesh = mesh.kept(kept[np.searchsorted(x, middle[:, 0]) - 1, np.searchsorted(y, middle[:, 1]) - 1])
+    net = meshdrape.drape(mesh.mould(), meshdrape.Fabric(spacing), seed=(seed, 0.2, 0), direction=(0, 1, 0))
+    assert net.count(NodeStatus.MET_ITSELF) == 0
+    assert net.count(NodeStatus.PLACED) > 300
+
+
 @pytest.mark.parametrize("sweep", [1.0, -2.0, 3.0])
 @pytest.mark.parametrize("seed", [(0, 0), (-150, -40), (140, 45)])
 def test_swept_plate(sweep, seed):
