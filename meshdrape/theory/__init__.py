@@ -60,7 +60,7 @@ from meshdrape.theory.profiles import (
     sine_deviation,
     table,
 )
-from meshdrape.theory.reach import Pair, Reach, last_column, within_reach
+from meshdrape.theory.reach import Pair, Reach, RibbonReach, last_column, ribbon_reach, within_reach
 from meshdrape.theory.reference_nets import (
     constant_curvature_angle,
     hypar,
@@ -99,6 +99,7 @@ __all__ = [
     "PsiRange",
     "Reach",
     "Return",
+    "RibbonReach",
     "ScaleCheck",
     "Sheet",
     "SlopeValidity",
@@ -145,6 +146,7 @@ __all__ = [
     "real_wing",
     "returning_rows",
     "ribbon_fed_bound",
+    "ribbon_reach",
     "ripple_deviation",
     "separation_of_scales",
     "sin2_slope_deviation",

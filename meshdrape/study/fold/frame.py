@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.study.fold.design import Design
-from meshdrape.theory import Fold, Sheet, within_reach
+from meshdrape.theory import Fold, Sheet, ribbon_reach, turning_points
 
 FloatArray = NDArray[np.float64]
 
@@ -72,9 +72,9 @@ class Frame:
 
         Which columns come down to ribbon-fed rows depends a little on gamma where the crease falls at first.
         """
-        gamma = 0.0
+        gamma, turns = 0.0, turning_points(self.fold)
         for _ in range(20):
-            new = within_reach(self.fold, self.height, gamma).gamma_best
+            new = ribbon_reach(self.fold, self.height, gamma, turns).gamma_best
             if abs(new - gamma) < 1e-10:
                 break
             gamma = new
