@@ -69,7 +69,10 @@ def ruled_mould(frame: Frame, cloth: Cloth, turn: float = RULED_TURN, facets: in
     # counter-clockwise about +z on the wing and about -x on the spar
     wing = np.concatenate([np.stack([a, a + k, a + k + 1], 1), np.stack([a, a + k + 1, a + 1], 1)])
     spar = np.concatenate([np.stack([a, a + 1, a + 2 * k + 1], 1), np.stack([a, a + 2 * k + 1, a + 2 * k], 1)])
-    return FoldMould(Mould.from_arrays(np.concatenate([crease, trailing, hem]), np.concatenate([wing, spar])), crease)
+    triangles = np.concatenate([wing, spar])
+    # two strips sewn along the crease: nothing that would have to be examined
+    mould = Mould(np.concatenate([crease, trailing, hem]), triangles, np.zeros(len(triangles), dtype=np.int64))
+    return FoldMould(mould, crease)
 
 
 def facet_bounds(frame: Frame, turn: float, facets: int) -> tuple[FloatArray, float]:
