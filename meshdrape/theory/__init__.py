@@ -70,7 +70,7 @@ from meshdrape.theory.reference_nets import (
     sphere_net,
 )
 from meshdrape.theory.ribbons import gap, locking_angle, locking_range, width_for
-from meshdrape.theory.sheet import NEITHER, RIBBON_FED, WING_FED, FoldNet, Gamma, Sheet, Worst
+from meshdrape.theory.sheet import NEITHER, RIBBON_FED, WING_FED, FoldNet, Gamma, Sheet, WingLattice, Worst
 from meshdrape.theory.weak import (
     straight_edge_node,
     straight_edge_sine,
@@ -105,6 +105,7 @@ __all__ = [
     "SlopeValidity",
     "SmoothNet",
     "Station",
+    "WingLattice",
     "Worst",
     "apex_net",
     "apex_shear",

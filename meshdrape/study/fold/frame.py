@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.study.fold.design import Design
-from meshdrape.theory import Fold, Sheet, ribbon_reach, turning_points
+from meshdrape.theory import Fold, WingLattice, ribbon_reach, turning_points
 
 FloatArray = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ class Cloth:
     @classmethod
     def of(cls, frame: Frame, spacing: float, row_offset: float, gamma: float) -> Cloth:
         """The lattice that covers a frame."""
-        sheet = Sheet(frame.fold, spacing, frame.height, gamma, row_offset)
+        sheet = WingLattice(frame.fold, spacing, frame.height, gamma, row_offset)
         return cls(frame, spacing, row_offset, len(sheet.s), len(sheet.x), sheet.first_row)
 
     @property
