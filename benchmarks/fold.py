@@ -2,7 +2,7 @@
 
 ``python benchmarks/fold.py``; some rows: ``python benchmarks/fold.py collar drape fold chart``. Beside another state of
 the sources, ``--against FOLDER``, every job is run in turn by both, so that whatever else the machine does slows both
-alike, and the last column has the other's CPU time over this one's.
+alike, and the last columns have the other's times over this one's.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def environment(tree: Path) -> dict[str, str]:
 def row(what: str, timed: list[list[tuple[float, float]]]) -> None:
     """A row of the table: the shortest of the rounds, of this state of the sources first."""
     (cpu, wall), *others = [tuple(map(min, zip(*rounds, strict=True))) for rounds in timed]
-    compared = "".join(f" {other[0]:.3f} | {other[0] / cpu:.2f} |" for other in others)
+    compared = "".join(f" {a:.3f} | {b:.3f} | {a / cpu:.2f} | {b / wall:.2f} |" for a, b in others)
     print(f"| {what} | {cpu:.3f} | {wall:.3f} |{compared}", flush=True)
 
 
@@ -115,8 +115,8 @@ def main() -> None:
     options = parser.parse_args()
     trees = [ROOT, *([options.against.resolve()] if options.against else [])]
     print(f"Python {platform.python_version()}, {os.cpu_count()} cores\n")
-    print("| what | CPU s | wall s |" + " other CPU s | other / this |" * (len(trees) - 1))
-    print("|---|---|---|" + "---|---|" * (len(trees) - 1))
+    print("| what | CPU s | wall s |" + " other's CPU s | wall s | CPU ratio | wall ratio |" * (len(trees) - 1))
+    print("|---|---|---|" + "---|---|---|---|" * (len(trees) - 1))
     jobs = [
         (name, run, jobs)
         for run, table in ((in_process, IN_PROCESS), (command, COMMANDS))

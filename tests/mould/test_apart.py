@@ -26,7 +26,13 @@ ENDLESS = ("hemisphere", {}, 1.0, 0.001)
 def apart(monkeypatch):
     """As if CadQuery had not been imported here: then a process is begun."""
     monkeypatch.delitem(sys.modules, "cadquery", raising=False)
-    return lambda *asked: ScriptApart(*asked)
+
+    def begun(*asked):
+        script = ScriptApart()
+        script.ask(*asked)
+        return script
+
+    return begun
 
 
 def test_it_is_the_mould_made_here(apart):
@@ -56,6 +62,13 @@ def test_a_process_that_dies_is_made_good_here(apart):
         assert len(script.mould().triangles) == len(build_script(*ASKED).triangles)
 
 
+@pytest.mark.usefixtures("apart")
+def test_one_that_is_never_asked_ends_too():
+    with ScriptApart() as script:
+        process = script._process
+    assert process.returncode == -signal.SIGKILL
+
+
 def test_leaving_the_block_ends_the_process(apart):
     with apart(*ENDLESS) as script:
         process = script._process
@@ -67,7 +80,8 @@ def test_leaving_the_block_ends_the_process(apart):
 def test_no_process_outlives_the_one_that_asked(how):
     code = (
         "import time; from meshdrape.mould.apart import ScriptApart\n"
-        f"with ScriptApart(*{ENDLESS!r}) as script:\n"
+        "with ScriptApart() as script:\n"
+        f"    script.ask(*{ENDLESS!r})\n"
         "    print(script._process.pid, flush=True); time.sleep(60)"
     )
     asking = subprocess.Popen(

@@ -74,8 +74,9 @@ def fold_answer(
         now = time.perf_counter()
         seconds[name], last = now - last, now
 
-    frame, gamma, cloth = _cloth(design)
-    with CadMould(design, frame, cloth) as mould:
+    with CadMould() as mould:
+        frame, gamma, cloth = _cloth(design)
+        mould.begin(design, frame, cloth)
         # what needs no CAD mould is found out while that is made
         stage("looking for the largest factor", None)
         try:

@@ -105,11 +105,15 @@ def cad_mould(design: Design, frame: Frame, cloth: Cloth) -> FoldMould:
 
 
 class CadMould:
-    """`cad_mould` begun in a process of its own; leave the block to give it up."""
+    """`cad_mould` in a process of its own, which begins to get ready at once; leave the block to give it up."""
 
-    def __init__(self, design: Design, frame: Frame, cloth: Cloth) -> None:
+    def __init__(self) -> None:
+        self._script = ScriptApart()
+
+    def begin(self, design: Design, frame: Frame, cloth: Cloth) -> None:
+        """Have the mould made; arguments as of `cad_mould`."""
         self._frame = frame
-        self._script = ScriptApart(*_script(design, frame, cloth))
+        self._script.ask(*_script(design, frame, cloth))
 
     def made(self) -> FoldMould:
         """Wait for it."""
