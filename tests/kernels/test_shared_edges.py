@@ -54,17 +54,17 @@ def test_shear_is_that_of_each_cell_by_itself():
     q = (np.arange(20)[:, None] * 21 + np.arange(20)).ravel()
     faces = np.concatenate([np.stack([q, q + 21, q + 22], 1), np.stack([q, q + 22, q + 1], 1)])
     mould = meshdrape.Mould.from_arrays(np.stack([x, y, 15 * np.sin(x / 60) * np.cos(y / 50)], axis=1), faces)
-    net = meshdrape.drape(mould, meshdrape.Fabric(7.0), seed=(95, 105, -7), direction=(1, 0.3, 0))
+    net = meshdrape.drape(mould, meshdrape.Fabric(3.0), seed=(95, 105, -7), direction=(1, 0.3, 0))
     status = net.node_status.copy()
     status[np.random.default_rng(3).random(status.shape) < 0.03] = NodeStatus.FOLDED
     lattice = net.lattice._replace(status=status)
     mesh, start, angle = net.surface.unfolding, net.start, np.pi / 2
     found = np.empty((status.shape[0] - 1, status.shape[1] - 1))
-    cell_shear(mesh, lattice, start, 0, angle, 7.0, 7.0, found)
+    cell_shear(mesh, lattice, start, 0, angle, 3.0, 3.0, found)
     whole = status <= NodeStatus.OFF_MOULD
     whole = whole[:-1, :-1] & whole[1:, :-1] & whole[:-1, 1:] & whole[1:, 1:]
     assert np.array_equal(np.isfinite(found), whole)
-    by_itself = np.array([shear_of(mesh, lattice, start, i, j, angle, 7.0, 7.0) for i, j in np.argwhere(whole)])
+    by_itself = np.array([shear_of(mesh, lattice, start, i, j, angle, 3.0, 3.0) for i, j in np.argwhere(whole)])
     # a cell inside one triangle is measured by its sides, without walking
     assert np.abs(found[whole] - by_itself).max() < 1e-13
     face = lattice.face
