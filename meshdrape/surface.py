@@ -174,27 +174,25 @@ class Surface:
     @cached_property
     def border_loops(self) -> list[IntArray]:
         """Half-edges 3 f + k along each border, the mould on their left; longest loop first."""
-        face, k = np.nonzero(self.face_neighbour < 0)
-        half = 3 * face + k
-        following: dict[int, int] = {}
         flat = self.face_neighbour.ravel()
-        for h in half.tolist():
-            # turn about the end vertex until the next border edge
-            g = 3 * (h // 3) + (h % 3 + 1) % 3
-            while flat[g] >= 0:
-                g = int(flat[g])
-                g = 3 * (g // 3) + (g % 3 + 1) % 3
-            following[h] = g
+        half = np.flatnonzero(flat < 0)
+        # turn about the end vertex until the next border edge
+        after = _next_in_face(half)
+        turning = np.flatnonzero(flat[after] >= 0)
+        while len(turning):
+            after[turning] = _next_in_face(flat[after[turning]])
+            turning = turning[flat[after[turning]] >= 0]
+        following = np.searchsorted(half, after).tolist()
         loops = []
-        left = set(half.tolist())
-        while left:
-            h = min(left)
-            loop = []
-            while h in left:
-                left.remove(h)
-                loop.append(h)
-                h = following[h]
-            loops.append(np.array(loop, dtype=np.int64))
+        left = [True] * len(half)
+        for first in range(len(half)):
+            at, loop = first, []
+            while left[at]:
+                left[at] = False
+                loop.append(at)
+                at = following[at]
+            if loop:
+                loops.append(half[loop])
         loops.sort(key=lambda loop: -float(self.half_edge_length(loop).sum()))
         return loops
 
@@ -272,6 +270,11 @@ class Surface:
         corners = self.vertices[self.faces]
         centre = corners.mean(axis=1)
         return centre, np.asarray(np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1))
+
+
+def _next_in_face(half: IntArray) -> IntArray:
+    """The half-edge after each of 3 f + k, round the same face."""
+    return np.asarray(half + np.where(half % 3 == 2, -2, 1))
 
 
 def _neighbours(faces: IntArray, n_vertices: int) -> IntArray:

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends
 from meshdrape.kernels.walk import MAX_CROSSINGS, off_mould
@@ -153,8 +155,11 @@ def touching_cells(mesh, net, start, i_first, warp, weft, out):
     _touching_by_corner(net.status, i_first, out)
     status = net.status
     face = net.face
+    # of edges two cells share: whether the one before found that they touch, 1 or 0, or has not looked, -1
+    above = np.full(out.shape[1], -1, dtype=np.int8)
     for a in range(out.shape[0]):
         i = i_first + a
+        right = -1
         for j in range(out.shape[1]):
             if (
                 status[i, j] == OFF_MOULD
@@ -164,7 +169,14 @@ def touching_cells(mesh, net, start, i_first, warp, weft, out):
                 # an edge inside one face off the mould crosses nothing
                 and not (face[i, j] == face[i + 1, j] == face[i, j + 1] == face[i + 1, j + 1])
             ):
-                out[a, j] = _touches_by_edge(mesh, net, start, i, j, warp, weft)
+                below = above[j] if above[j] >= 0 else _edge_touches(mesh, net, start, WEFT, i, j, weft)
+                left = right if right >= 0 else _edge_touches(mesh, net, start, WARP, i, j, warp)
+                right = _edge_touches(mesh, net, start, WARP, i, j + 1, warp)
+                above[j] = _edge_touches(mesh, net, start, WEFT, i + 1, j, weft)
+                out[a, j] = below + left + right + above[j] > 0
+            else:
+                right = -1
+                above[j] = -1
 
 
 @kernel(nogil=True)
@@ -180,20 +192,10 @@ def _touching_by_corner(status, i_first, out):
 
 
 @kernel
-def _touches_by_edge(mesh, net, start, i, j, warp, weft):
-    """Whether an edge of a cell off the mould crosses a corner of it."""
-    for step in range(4):
-        if step < 2:
-            k = j + step
-            dx, dy, _, _ = edge_ends(mesh, net, start, WARP, i, k, 1, warp)
-            hit = _crosses_mould(mesh, net.face[i, k], net.xy[i, k, 0], net.xy[i, k, 1], dx, dy, warp)
-        else:
-            k = i + step - 2
-            dx, dy, _, _ = edge_ends(mesh, net, start, WEFT, k, j, 1, weft)
-            hit = _crosses_mould(mesh, net.face[k, j], net.xy[k, j, 0], net.xy[k, j, 1], dx, dy, weft)
-        if hit:
-            return True
-    return False
+def _edge_touches(mesh, net, start, family, i, j, length):
+    """Whether the edge that leaves (i, j) for larger indices crosses a face of the mould, 1 or 0."""
+    dx, dy, _, _ = edge_ends(mesh, net, start, family, i, j, 1, length)
+    return 1 if _crosses_mould(mesh, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length) else 0
 
 
 @kernel(nogil=True)

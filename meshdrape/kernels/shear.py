@@ -74,6 +74,9 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
         if reuse:
             below, above = above, below
         above_row = i + 1
+        # both ends of the warp edge this cell shares with the one before it, where that has found them
+        cx = math.nan
+        cy = dx = dy = cx
         for j in range(n_weft - 1):
             f = net.face[i, j]
             placed = net.status[i, j] <= OFF_MOULD and net.status[i, j + 1] <= OFF_MOULD
@@ -86,6 +89,7 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
                     above[j, 1] = py
                     above[j, 2] = qx
                     above[j, 3] = qy
+                cx = math.nan
                 continue
             g = net.face[i + 1, j]
             one_face = f == g and f == net.face[i, j + 1] and f == net.face[i + 1, j + 1]
@@ -97,6 +101,7 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
                 out[a, j] = initial_angle - _angle(px, py, qx, qy)
                 # the row above asks for this edge again if it needs it: it must not matter where a block begins
                 above[j, 0] = math.nan
+                cx = math.nan
                 continue
             if not reuse or math.isnan(below[j, 0]):
                 px, py, qx, qy = edge_ends(mesh, net, start, WEFT, i, j, 1, weft)
@@ -109,7 +114,10 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
             above[j, 1] = py
             above[j, 2] = qx
             above[j, 3] = qy
-            ax, ay, bx, by = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
+            if math.isnan(cx):
+                ax, ay, bx, by = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
+            else:
+                ax, ay, bx, by = cx, cy, dx, dy
             cx, cy, dx, dy = edge_ends(mesh, net, start, WARP, i, j + 1, 1, warp)
             out[a, j] = initial_angle - _mean_corner(
                 start, i, j, ax, ay, bx, by, cx, cy, dx, dy,

@@ -76,7 +76,8 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
         at = segments[:, :1] + np.diff(segments, axis=1) * probes
         split = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
         for passage in passages:
-            split |= _metric_length(passage, at) > 1.0
+            rest = np.flatnonzero(~split)
+            split[rest] = _metric_length(passage, at[rest]) > 1.0
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])

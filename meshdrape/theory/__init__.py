@@ -60,7 +60,7 @@ from meshdrape.theory.profiles import (
     sine_deviation,
     table,
 )
-from meshdrape.theory.reach import Pair, Reach, last_column, within_reach
+from meshdrape.theory.reach import Pair, Reach, RibbonReach, last_column, ribbon_reach, within_reach
 from meshdrape.theory.reference_nets import (
     constant_curvature_angle,
     hypar,
@@ -70,7 +70,7 @@ from meshdrape.theory.reference_nets import (
     sphere_net,
 )
 from meshdrape.theory.ribbons import gap, locking_angle, locking_range, width_for
-from meshdrape.theory.sheet import NEITHER, RIBBON_FED, WING_FED, FoldNet, Gamma, Sheet, Worst
+from meshdrape.theory.sheet import NEITHER, RIBBON_FED, WING_FED, FoldNet, Gamma, Sheet, WingLattice, Worst
 from meshdrape.theory.weak import (
     straight_edge_node,
     straight_edge_sine,
@@ -99,11 +99,13 @@ __all__ = [
     "PsiRange",
     "Reach",
     "Return",
+    "RibbonReach",
     "ScaleCheck",
     "Sheet",
     "SlopeValidity",
     "SmoothNet",
     "Station",
+    "WingLattice",
     "Worst",
     "apex_net",
     "apex_shear",
@@ -145,6 +147,7 @@ __all__ = [
     "real_wing",
     "returning_rows",
     "ribbon_fed_bound",
+    "ribbon_reach",
     "ripple_deviation",
     "separation_of_scales",
     "sin2_slope_deviation",

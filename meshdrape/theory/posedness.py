@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshdrape.theory.fold import Fold
 from meshdrape.theory.quadrature import FloatArray
@@ -41,14 +42,26 @@ def returning_rows(fold: Fold, gamma: float = 0.0, stations: int = 4097) -> list
     x, psi = fold.spar(y), fold.psi(y)
     falls = np.concatenate([[False], np.diff(x) < -1e-14 * fold.span, [False]])
     starts, ends = np.flatnonzero(~falls[:-1] & falls[1:]), np.flatnonzero(falls[:-1] & ~falls[1:])
-    found = []
-    for i, j in zip(starts.tolist(), ends.tolist(), strict=True):
-        turn = 0.0
-        for k in range(i + 1, j + 1):
-            before = np.flatnonzero(x[:k] < x[k])  # the last place lower than here: there the row came over
-            over = psi[before[-1]] if len(before) else gamma
-            turn = max(turn, float(abs(psi[k] - over)))
-        found.append(Return(float(y[i]), float(y[j]), float(x[i] - x[j]), turn))
+    if not len(starts):
+        return []
+    before = _last_lower(x)  # there the row came over
+    turn = np.abs(psi - np.where(before < 0, gamma, psi[before]))
+    return [
+        Return(float(y[i]), float(y[j]), float(x[i] - x[j]), float(turn[i + 1 : j + 1].max()))
+        for i, j in zip(starts.tolist(), ends.tolist(), strict=True)
+    ]
+
+
+def _last_lower(x: FloatArray) -> NDArray[np.int64]:
+    """For each number the last one before it that is lower, (n,); -1 where there is none."""
+    found = np.full(len(x), -1)
+    rising: list[tuple[float, int]] = []  # those that can still be the last lower one
+    for k, value in enumerate(x.tolist()):
+        while rising and rising[-1][0] >= value:
+            rising.pop()
+        if rising:
+            found[k] = rising[-1][1]
+        rising.append((value, k))
     return found
 
 

@@ -30,6 +30,24 @@ class Pair(NamedTuple):
     y1: float
 
 
+class RibbonReach(NamedTuple):
+    """Largest shear within the spar's height where rows start on the left-most ribbon.
+
+    Attributes
+    ----------
+    ribbon_fed : Pair
+        max |ψ(y1) - γ|.
+    gamma_best : float
+        The γ that makes it least: middle of the ψ of the columns that reach such rows.
+    ribbon_fed_best : float
+        The shear it leaves, half the range of that ψ.
+    """
+
+    ribbon_fed: Pair
+    gamma_best: float
+    ribbon_fed_best: float
+
+
 class Reach(NamedTuple):
     """Largest shear within the spar's height.
 
@@ -66,12 +84,23 @@ def within_reach(fold: Fold, height: float, gamma: float = 0.0) -> Reach:
         msg = f"height={height}: must be positive"
         raise DesignError(msg)
     turns = turning_points(fold)
-    wing_fed = _wing_fed(fold, height, turns)
-    stations = _ribbon_columns(fold, height, gamma, turns)
+    return Reach(_wing_fed(fold, height, turns), *ribbon_reach(fold, height, gamma, turns))
+
+
+def ribbon_reach(fold: Fold, height: float, gamma: float, turns: FloatArray | None = None) -> RibbonReach:
+    """The part of `within_reach` that hangs on gamma, for those who try several.
+
+    Parameters
+    ----------
+    fold, height, gamma
+        As there.
+    turns : (n,) float, optional
+        `turning_points` of the fold, where they are known.
+    """
+    stations = _ribbon_columns(fold, height, gamma, turning_points(fold) if turns is None else turns)
     psi = fold.psi(stations)
     worst = int(np.argmax(np.abs(psi - gamma)))
-    return Reach(
-        wing_fed,
+    return RibbonReach(
         Pair(float(abs(psi[worst] - gamma)), 0.0, float(stations[worst])),
         float(psi.max() + psi.min()) / 2,
         float(psi.max() - psi.min()) / 2,

@@ -36,8 +36,8 @@ class Worst(NamedTuple):
     place: FloatArray
 
 
-class Sheet:
-    """The lattice on the wing and where its rows and columns cross the crease.
+class WingLattice:
+    """The lattice on the wing.
 
     Parameters
     ----------
@@ -56,17 +56,6 @@ class Sheet:
     y : (n,) where each column crosses the crease
     x : (rows,) where each row lies on the wing
     on_spar : (n, rows) bool
-    entry : (n, rows) int
-        Column at which the row's stretch on the spar began; 0 where it starts on the left ribbon.
-    entry_column, entry_row : (m,) int
-        The nodes at which rows come over the crease, and
-    entry_y : (m,) float
-        where they cross it.
-    exit_column, exit_row : (k,) int
-        Nodes where a row comes back to the wing: the ill-posed case at the end of section 3.4. The sheet is taken to
-        lie undeformed on the wing all the same; the row's link to such a node has not the right length.
-    last_exit : (n, rows) int
-        Column of the row's latest exit, 0 for none.
     """
 
     def __init__(self, fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, row_offset: float = 0.5) -> None:
@@ -86,23 +75,6 @@ class Sheet:
         self.x = self.corner + (self.row + row_offset) * spacing
         # a node within 1e-9 spacings of the crease counts as on the spar: its link has no direction on the wing
         self.on_spar = self.x < self.edge[:, None] + 1e-9 * spacing
-        self._cross()
-
-    def _cross(self) -> None:
-        """Find where rows come over the crease and where they go back."""
-        new = self.on_spar.copy()
-        new[1:] &= ~self.on_spar[:-1]
-        self.entry = np.maximum.accumulate(np.where(new, np.arange(len(self.s))[:, None], 0), axis=0)
-        self.entry_column, self.entry_row = (index + 0 for index in np.nonzero(new[1:]))
-        self.entry_column += 1
-        x, k = self.x[self.entry_row], self.entry_column
-        spar = self.fold.spar
-        self.entry_y = root_between(lambda y: spar(y) - x, spar.slope, self.y[k - 1], self.y[k])
-        self.exit_column, self.exit_row = np.nonzero(self.on_spar[:-1] & ~self.on_spar[1:])
-        self.exit_column = self.exit_column + 1
-        left = np.zeros(self.on_spar.shape, dtype=np.int64)
-        left[self.exit_column, self.exit_row] = self.exit_column
-        self.last_exit = np.maximum.accumulate(left, axis=0)
 
     @cached_property
     def drift(self) -> ComplexArray:
@@ -122,6 +94,47 @@ class Sheet:
                 break
             length += 1.1 * short / np.cos(self.gamma)
         return -int(np.ceil(length / self.spacing + self.row_offset)) - 1
+
+
+class Sheet(WingLattice):
+    """The lattice on the wing and where its rows and columns cross the crease.
+
+    Parameters are those of `WingLattice`, and so are the further attributes.
+
+    Attributes
+    ----------
+    entry : (n, rows) int
+        Column at which the row's stretch on the spar began; 0 where it starts on the left ribbon.
+    entry_column, entry_row : (m,) int
+        The nodes at which rows come over the crease, and
+    entry_y : (m,) float
+        where they cross it.
+    exit_column, exit_row : (k,) int
+        Nodes where a row comes back to the wing: the ill-posed case at the end of section 3.4. The sheet is taken to
+        lie undeformed on the wing all the same; the row's link to such a node has not the right length.
+    last_exit : (n, rows) int
+        Column of the row's latest exit, 0 for none.
+    """
+
+    def __init__(self, fold: Fold, spacing: float, height: float, gamma: Gamma = 0.0, row_offset: float = 0.5) -> None:
+        super().__init__(fold, spacing, height, gamma, row_offset)
+        self._cross()
+
+    def _cross(self) -> None:
+        """Find where rows come over the crease and where they go back."""
+        new = self.on_spar.copy()
+        new[1:] &= ~self.on_spar[:-1]
+        self.entry = np.maximum.accumulate(np.where(new, np.arange(len(self.s))[:, None], 0), axis=0)
+        self.entry_column, self.entry_row = (index + 0 for index in np.nonzero(new[1:]))
+        self.entry_column += 1
+        x, k = self.x[self.entry_row], self.entry_column
+        spar = self.fold.spar
+        self.entry_y = root_between(lambda y: spar(y) - x, spar.slope, self.y[k - 1], self.y[k])
+        self.exit_column, self.exit_row = np.nonzero(self.on_spar[:-1] & ~self.on_spar[1:])
+        self.exit_column = self.exit_column + 1
+        left = np.zeros(self.on_spar.shape, dtype=np.int64)
+        left[self.exit_column, self.exit_row] = self.exit_column
+        self.last_exit = np.maximum.accumulate(left, axis=0)
 
     def ribbon(self) -> ComplexArray:
         """Places of the left-most spar ribbon's nodes, (rows,); only those on the spar mean anything."""

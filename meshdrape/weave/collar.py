@@ -8,6 +8,8 @@ the net together at the border and are trimmed afterwards.
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,7 @@ from meshdrape.weave.notches import without_notches
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 # A convex corner that turns more than this gets a fan of flat triangles, for a mitre would reach too far.
 FAN_FROM = np.radians(100.0)
@@ -29,6 +32,10 @@ RULING_LEAVES = 0.35
 RULINGS_APART = 0.1
 # An outer edge keeps at least this share of its border edge, else the extension of a hollow border would fold over.
 OUTER_EDGE_SHARE = 0.05
+# It is drawn in by a fifth so often at most.
+MOST_ROUNDS = 80
+# Squares of diagonals that differ by no more than this share are of one length.
+ALIKE = 1e-12
 
 
 def extended(surface: Surface, depth: float) -> Surface:
@@ -59,90 +66,130 @@ def extended(surface: Surface, depth: float) -> Surface:
 
 
 def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[FloatArray, IntArray]:
+    """Vertices and faces of the strips along an outer border, one a border edge, and of the fans between them."""
     face, k = loop // 3, loop % 3
     tail = surface.faces[face, k]
-    head = np.roll(tail, -1)
-    along = surface.vertices[head] - surface.vertices[tail]
+    along = surface.vertices[_next(tail)] - surface.vertices[tail]
     length = np.linalg.norm(along, axis=1)
     along /= length[:, None]
-    outward = np.cross(along, surface.face_normal[face])
-    before = np.roll(outward, 1, axis=0)
-    turn = np.pi - surface.vertex_angle[tail]
     normal = surface.face_normal[face]
-    ruling = np.cross(np.roll(normal, 1, axis=0), normal)
+    outward = np.cross(along, normal)
+    before = _last(outward)
+    turn = np.pi - surface.vertex_angle[tail]
+    ruling = np.cross(_last(normal), normal)
     angle = np.linalg.norm(ruling, axis=1)
     ruling /= np.maximum(angle, ONE_PLANE)[:, None]
-    ruling *= np.where(np.einsum("ij,ij->i", ruling, before + outward) < 0, -1.0, 1.0)[:, None]
-    leaves = np.minimum(np.einsum("ij,ij->i", ruling, before), np.einsum("ij,ij->i", ruling, outward))
+    middle = before + outward
+    ruling *= np.where(_dot(ruling, middle) < 0, -1.0, 1.0)[:, None]
+    leaves = np.minimum(_dot(ruling, before), _dot(ruling, outward))
     ruled = (angle > ONE_PLANE) & (leaves > RULING_LEAVES)
     # what fills a notch leans as the notch had it: no ruling of the mould's
     filling = surface.face_rim[face] >= 0
-    ruled &= ~(filling | np.roll(filling, 1))
+    ruled &= ~(filling | _last(filling))
     # nor are there rulings where those of neighbours point every way: there the planes meet by noise
-    apart = np.linalg.norm(np.cross(ruling, np.roll(ruling, -1, axis=0)), axis=1) > RULINGS_APART
-    alone = ruled & (np.roll(ruled, 1) | np.roll(ruled, -1)) & ~_in_family(ruled, apart)
+    apart = np.linalg.norm(np.cross(ruling, _next(ruling)), axis=1) > RULINGS_APART
+    alone = ruled & (_last(ruled) | _next(ruled)) & ~_in_family(ruled, apart)
     ruled &= ~alone | (angle >= CREASE)
-    # one outer vertex a border vertex, as far out as both strips are deep
-    middle = before + outward
     size = np.linalg.norm(middle, axis=1)
     mitre = np.where((size > 0.5)[:, None], middle / np.maximum(size, 0.5)[:, None], outward)
+
+    # one outer vertex a border vertex, as far out as both strips are deep
+    rays = (mitre, depth / np.clip(size / 2, RULING_LEAVES, 1.0)), (ruling, depth / np.clip(leaves, RULING_LEAVES, 1.0))
+    # how far that lies along the border edge which starts there, and along the one that ends there
+    onward = [reach * _dot(ray, along) for ray, reach in rays]
+    arrived = [reach * _dot(ray, _last(along)) for ray, reach in rays]
     shrink = np.ones(len(loop))
-    for _ in range(80):
-        fan = (turn > FAN_FROM) & ~ruled
-        ray = np.where(ruled[:, None], ruling, mitre)
-        reach = shrink * depth / np.clip(np.where(ruled, leaves, size / 2), RULING_LEAVES, 1.0)
-        start = np.where(fan[:, None], depth * outward, reach[:, None] * ray)
-        end = np.roll(np.where(fan[:, None], depth * before, reach[:, None] * ray), -1, axis=0)
-        outer = length + np.einsum("ij,ij->i", end - start, along)
+    for _ in range(MOST_ROUNDS):
+        chosen, fan = ruled, (turn > FAN_FROM) & ~ruled
+        used = np.where(fan, 0.0, shrink)  # a fan begins and ends square to its edges
+        outer = length + _next(used * np.where(ruled, arrived[1], arrived[0]))
+        outer -= used * np.where(ruled, onward[1], onward[0])
         folded = outer < OUTER_EDGE_SHARE * length
         if not folded.any():
             break
-        touched = folded | np.roll(folded, 1)
+        touched = folded | _last(folded)
         # planes of a doubly curved border meet at random: a ruling that is not one of a family is worse than a mitre
-        crossing = folded & ruled & np.roll(ruled, -1) & apart
-        stray = crossing | np.roll(crossing, 1) | (touched & ruled & ~_in_family(ruled, apart))
+        crossing = folded & ruled & _next(ruled) & apart
+        stray = crossing | _last(crossing) | (touched & ruled & ~_in_family(ruled, apart))
         stray &= ruled & (angle < CREASE)
-        ruled &= ~stray
-        if not stray.any():
-            shrink[touched] *= 0.8
-
-    new_vertices: list[FloatArray] = []
-    new_faces: list[tuple[int, int, int]] = []
-    leaving = np.empty(len(loop), dtype=np.int64)  # outer vertex of the strip that starts here
-    arriving = np.empty(len(loop), dtype=np.int64)  # of the strip that ends here
-    for i, vertex in enumerate(tail.tolist()):
-        at = surface.vertices[vertex]
-        n = first + len(new_vertices)
-        if not fan[i]:
-            new_vertices.append(at + reach[i] * ray[i])
-            leaving[i] = arriving[i] = n
-            continue
-        spread = _fan(before[i], outward[i], along[i - 1], turn[i])
-        new_vertices.extend(at + depth * ray for ray in spread)
-        arriving[i], leaving[i] = n, n + len(spread) - 1
-        new_faces.extend((vertex, n + j, n + j + 1) for j in range(len(spread) - 1))
-    for a, b, outer_a, outer_b in zip(
-        tail.tolist(), head.tolist(), leaving.tolist(), np.roll(arriving, -1).tolist(), strict=True
-    ):
-        # cut along the shorter diagonal: a mirrored mould gets the mirrored collar
-        across_a = surface.vertices[b] - new_vertices[outer_a - first]
-        across_b = surface.vertices[a] - new_vertices[outer_b - first]
-        if across_a @ across_a <= across_b @ across_b:
-            new_faces += [(b, a, outer_a), (b, outer_a, outer_b)]
+        if stray.any():
+            ruled = ruled & ~stray
         else:
-            new_faces += [(b, a, outer_b), (a, outer_a, outer_b)]
-    return np.array(new_vertices), np.array(new_faces, dtype=np.int64)
+            shrink = np.where(touched, 0.8 * shrink, shrink)
+    out = [(used * reach)[:, None] * ray for ray, reach in rays]
+    place = surface.vertices[tail] + np.where(chosen[:, None], out[1], out[0])
+    spreads = {
+        i: surface.vertices[tail[i]] + depth * _fan(before[i], outward[i], along[i - 1], turn[i])
+        for i in np.flatnonzero(fan).tolist()
+    }
+    return _sewn(surface.vertices, tail, place, spreads, first)
+
+
+def _sewn(
+    vertices: FloatArray, tail: IntArray, place: FloatArray, spreads: dict[int, FloatArray], first: int
+) -> tuple[FloatArray, IntArray]:
+    """The outer vertices, numbered on from `first`, and the faces that join them to the border.
+
+    Parameters
+    ----------
+    tail : (k,)
+        Vertices of the border, in order.
+    place : (k, 3)
+        The outer vertex of each, but for those that have a fan of several:
+    spreads : dict of (n, 3)
+    """
+    count = np.ones(len(tail), dtype=np.int64)
+    for i, spread in spreads.items():
+        count[i] = len(spread)
+    start = np.cumsum(count) - count  # the first outer vertex of each, at which the strip before it ends
+    outer = np.repeat(place, count, axis=0)
+    faces = []
+    for i, spread in spreads.items():
+        n = int(start[i])
+        outer[n : n + len(spread)] = spread
+        on = first + np.arange(n, n + len(spread))
+        faces.append(np.stack([np.full(len(spread) - 1, tail[i]), on[:-1], on[1:]], axis=1))
+    a, b = tail, _next(tail)
+    outer_a, outer_b = start + count - 1, _next(start)
+    across_a, across_b = vertices[b] - outer[outer_a], vertices[a] - outer[outer_b]
+    outer_a, outer_b = outer_a + first, outer_b + first
+    # cut along the shorter diagonal: a mirrored mould gets the mirrored collar; where they are alike, not by round-off
+    at_a = _dot(across_a, across_a) <= (1 + ALIKE) * _dot(across_b, across_b)
+    strips = np.stack(
+        [
+            np.stack([b, a, np.where(at_a, outer_a, outer_b)], axis=1),
+            np.stack([np.where(at_a, b, a), outer_a, outer_b], axis=1),
+        ],
+        axis=1,
+    )
+    return outer, np.concatenate([*faces, strips.reshape(-1, 3)])
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Scalar product of each row, (n,)."""
+    return np.asarray(np.einsum("ij,ij->i", a, b))
+
+
+def _next(values: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Of the next vertex round the loop."""
+    return np.concatenate([values[1:], values[:1]])
+
+
+def _last(values: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Of the one before."""
+    return np.concatenate([values[-1:], values[:-1]])
 
 
 def _in_family(ruled: NDArray[np.bool_], apart: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Whether each ruling is one of three or more in a row of which neighbours are nearly parallel."""
-    kin = ruled & np.roll(ruled, -1) & ~apart
-    three = kin & np.roll(kin, -1)
-    return np.asarray(three | np.roll(three, 1) | np.roll(three, 2))
+    kin = ruled & _next(ruled) & ~apart
+    three = kin & _next(kin)
+    beside = _last(three)
+    return np.asarray(three | beside | _last(beside))
 
 
-def _fan(first: FloatArray, last: FloatArray, along: FloatArray, turn: float) -> list[FloatArray]:
-    """Unit rays from `first` to `last`, at most 60 degrees apart, the outer ones a full depth out in between."""
+def _fan(first: FloatArray, last: FloatArray, along: FloatArray, turn: float) -> FloatArray:
+    """Unit rays (n, 3) from `first` to `last`, at most 60 degrees apart, the outer ones a full depth out in between."""
     angle = float(np.arccos(np.clip(first @ last, -1.0, 1.0)))
     steps = max(1, int(np.ceil(max(angle, turn) / np.radians(60.0))))
     across = last - (first @ last) * first
@@ -150,7 +197,7 @@ def _fan(first: FloatArray, last: FloatArray, along: FloatArray, turn: float) ->
     # a tip that turns right back: the rays are opposite and the fan goes round by the way ahead
     across = across / size if size > 1e-6 else along
     rays = [np.cos(angle * j / steps) * first + np.sin(angle * j / steps) * across for j in range(1, steps)]
-    return [first, *(ray / np.cos(0.5 * angle / steps) for ray in rays), last]
+    return np.array([first, *(ray / np.cos(0.5 * angle / steps) for ray in rays), last])
 
 
 def _fill(surface: Surface, loop: IntArray, first: int) -> tuple[FloatArray, IntArray]:

@@ -125,10 +125,26 @@ class Measures:
 
 def measure(net: Net) -> Measures:
     """Shear of every cell of a net, and the figures drawn from it."""
+    n_warp, _ = net.shape
+    mesh, fabric = net.surface.unfolding, net.fabric
+    shear = shear_of_cells(net)
+    touching = np.empty(shear.shape, dtype=np.bool_)
+    if shear.size:
+        net.in_threads(
+            emit.touching_cells,
+            [
+                (mesh, net.lattice, net.start, a, fabric.warp_spacing, fabric.weft_spacing, touching[a:b])
+                for a, b in net.row_blocks(0, n_warp - 1)
+            ],
+        )
+    return Measures(net, shear, touching)
+
+
+def shear_of_cells(net: Net) -> FloatArray:
+    """Signed shear of every cell, (n_warp - 1, n_weft - 1) rad, whether it touches the mould or not."""
     n_warp, n_weft = net.shape
     mesh, fabric = net.surface.unfolding, net.fabric
     shear = np.empty((max(n_warp - 1, 0), max(n_weft - 1, 0)))
-    touching = np.empty(shear.shape, dtype=np.bool_)
     if shear.size:
         net.in_threads(
             cell_shear,
@@ -146,11 +162,4 @@ def measure(net: Net) -> Measures:
                 for a, b in net.row_blocks(0, n_warp - 1)
             ],
         )
-        net.in_threads(
-            emit.touching_cells,
-            [
-                (mesh, net.lattice, net.start, a, fabric.warp_spacing, fabric.weft_spacing, touching[a:b])
-                for a, b in net.row_blocks(0, n_warp - 1)
-            ],
-        )
-    return Measures(net, shear, touching)
+    return shear

@@ -20,6 +20,8 @@ HOLLOW = 2.0
 LEAN_COSINE = 0.5
 # Height of the lowest triangle worth adding, of its longest side.
 FLATTEST = 1e-3
+# Round-off of lengths that are worked out in two ways.
+NEARLY = 1e-9
 
 
 def without_notches(surface: Surface, width: float) -> NDArray[np.int64]:
@@ -30,8 +32,19 @@ def without_notches(surface: Surface, width: float) -> NDArray[np.int64]:
     filled: list[tuple[int, int, int]] = []
     for loop in surface.border_loops:
         if not surface.is_hole(loop):
-            filled += _Border(surface, loop).fill(width)
+            narrow = _narrow(surface, loop, width)
+            if len(narrow):
+                filled += _Border(surface, loop).fill(width, narrow.tolist())
     return np.array(filled, dtype=np.int64).reshape(-1, 3)
+
+
+def _narrow(surface: Surface, loop: NDArray[np.int64], width: float) -> NDArray[np.int64]:
+    """Places along a border at which there may be a notch: all that :meth:`_Border._offer` takes, and hardly more."""
+    tail = surface.faces[loop // 3, loop % 3]
+    point = surface.vertices[tail]
+    across = (1 - NEARLY) * np.linalg.norm(np.roll(point, -1, axis=0) - np.roll(point, 1, axis=0), axis=1)
+    hollow = (surface.vertex_angle[tail] - np.pi) * HOLLOW * width < (0.5 - NEARLY) * across
+    return np.flatnonzero(~hollow & (across <= width))
 
 
 class _Border:
@@ -50,14 +63,14 @@ class _Border:
         self.left = n
         self.edges = {tuple(sorted(edge)) for edge in zip(self.vertex, np.roll(tail, -1).tolist(), strict=True)}
 
-    def fill(self, width: float) -> list[tuple[int, int, int]]:
-        """Fill notches up to a width; the triangles."""
+    def fill(self, width: float, narrow: list[int]) -> list[tuple[int, int, int]]:
+        """Fill notches up to a width, beginning at places that may have one; the triangles."""
         from scipy.spatial import cKDTree
 
         points = self.vertices[self.vertex]
         self.near = cKDTree(points)
         waiting: list[tuple[float, int, int, int]] = []
-        for k in range(self.left):
+        for k in narrow:
             self._offer(waiting, k, width)
         filled = []
         while waiting and self.left > 3:

@@ -85,6 +85,12 @@ def fill(
                 for b in range(-(-spans[sj][1] // TILE)):
                     waiting[_Tile(si, sj, a, b)] = (a > 0) + (b > 0)
     placed = 0
+    if threads == 1:
+        for tile in waiting:  # after their parents, as they are listed
+            placed += run(tile)
+            if progress is not None:
+                progress(placed)
+        return
     with ThreadPoolExecutor(threads) as pool:
         running: dict[Future[int], _Tile] = {}
         for tile in [tile for tile, parents in waiting.items() if parents == 0]:

@@ -1,10 +1,15 @@
 """meshdrape fold: a design in, JSON and one page of text out."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
-from command import SAMPLES, run
+from command import ROOT, SAMPLES, run
 from fold_designs import REAL, design, draped, in_degrees, table, toml
 
 CRITERIA = ["eq20", "eq29", "within_reach", "characteristics", "drape"]
@@ -110,6 +115,26 @@ def test_chart(capfd, tmp_path):
     assert np.shape(found["wing_fed_deg"]) == np.shape(found["amplitude_mm"]) == (4, 3)
     assert len(found["allowed_mm"]) == len(found["wavelength_mm"]) == 3
     assert all(allowed > 0 for allowed in found["allowed_mm"])
+
+
+@pytest.mark.parametrize("delay", [0.6, 3.0])
+def test_ctrl_c_ends_every_process(tmp_path, delay):
+    """As a terminal sends it, to the command and to the process in which the CAD mould is made."""
+    begin = "import sys; from meshdrape.cli.main import main; print('begun', flush=True); sys.exit(main())"
+    words = ["fold", REAL_PARABOLA, "--quiet", "-o", tmp_path / "answer.json", "--chart", "30x30"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", begin, *map(str, words)], env={**os.environ, "PYTHONPATH": str(ROOT)}, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(delay)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (130, "", "meshdrape: interrupted; no file was left half written\n")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(ProcessLookupError):
+        os.killpg(process.pid, 0)
 
 
 @pytest.mark.parametrize(("words", "says"), [

@@ -1,12 +1,14 @@
 """How far a design can go: factors that are known in closed form, and those found sent through the CAD mould."""
 
 import math
+import time
 
 import numpy as np
 import pytest
 from fold_designs import design, draped, in_degrees
 
 from meshdrape.errors import DesignError
+from meshdrape.study.fold import chart as chart_module
 from meshdrape.study.fold.chart import _STEEPNESS, FAMILIES, allowed, envelope
 from meshdrape.study.fold.limits import limits
 from meshdrape.theory import named_deviation
@@ -74,6 +76,22 @@ def test_chart_is_made_of_drapes():
     for b in range(3):
         k = int(np.searchsorted(chart.largest[:, b], of.locking_angle))
         assert chart.amplitude[k - 1, b] < chart.allowed[b] < chart.amplitude[k, b]
+
+
+def test_interrupted_chart_does_not_drape_the_rest(monkeypatch):
+    laid: list[float] = []
+
+    def slowly(of, family, amplitude, wavelength, spacing):
+        laid.append(amplitude)
+        time.sleep(0.02)
+
+    def interrupted(done):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(chart_module, "_draped", slowly)
+    with pytest.raises(KeyboardInterrupt):
+        envelope(design(), "sine", (20, 20), interrupted, threads=2)
+    assert len(laid) < 40
 
 
 def test_allowed_amplitude_of_a_known_shear():

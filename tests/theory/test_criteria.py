@@ -21,6 +21,7 @@ from meshdrape.theory import (
     quadratic,
     real_wing,
     ribbon_fed_bound,
+    ribbon_reach,
     ripple_deviation,
     slope_criterion,
     turning_points,
@@ -60,6 +61,16 @@ def test_within_reach_of_the_real_wing(name):
     slack = np.degrees(np.abs(fold_of(name).psi_slope(y)).max()) * 0.1
     for found, sampled in zip((reach.wing_fed, reach.ribbon_fed), REAL[name][2:], strict=True):
         assert -6e-4 < np.degrees(found.shear) - sampled < slack
+
+
+@pytest.mark.parametrize("name", [*REAL, "sine"])
+@pytest.mark.parametrize("gamma", [0.0, -0.05, 0.03])
+def test_what_hangs_on_gamma_may_be_asked_alone(name, gamma):
+    fold = fold_of(name)
+    reach = within_reach(fold, 0.7, gamma)
+    for alone in (ribbon_reach(fold, 0.7, gamma), ribbon_reach(fold, 0.7, gamma, turning_points(fold))):
+        assert (reach.ribbon_fed, reach.gamma_best, reach.ribbon_fed_best) == alone
+    assert reach.wing_fed == within_reach(fold, 0.7).wing_fed
 
 
 @pytest.mark.parametrize("name", REAL)

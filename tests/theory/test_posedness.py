@@ -15,6 +15,7 @@ from meshdrape.theory import (
     ripple_deviation,
     sine_deviation,
 )
+from meshdrape.theory.posedness import _last_lower
 
 
 def test_a_crease_that_only_rises_returns_nothing():
@@ -48,6 +49,15 @@ def test_as_many_rows_come_back_as_the_net_has_exits():
         assert abs(len(sheet.exit_row) - drops / 0.005) <= len(returning_rows(fold))
         for y in sheet.y[sheet.exit_column]:
             assert any(k.start - 0.01 <= y <= k.end + 0.01 for k in returning_rows(fold))
+
+
+@pytest.mark.parametrize(
+    "values", [[0.0], [1.0, 1.0, 1.0], np.sin(np.arange(60) ** 2), np.round(np.cos(np.arange(80)), 1)]
+)
+def test_last_lower_is_found_by_looking_back(values):
+    x = np.asarray(values)
+    looked = [max((i for i in range(k) if x[i] < x[k]), default=-1) for k in range(len(x))]
+    assert _last_lower(x).tolist() == looked
 
 
 def test_grazing_rows():

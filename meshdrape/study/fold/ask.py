@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from meshdrape.errors import MeshdrapeError
 from meshdrape.study.fold.answer import FoldAnswer
 from meshdrape.study.fold.chart import envelope
 from meshdrape.study.fold.criteria import verdict
 from meshdrape.study.fold.design import Design
-from meshdrape.study.fold.frame import Cloth, frame_of
+from meshdrape.study.fold.frame import Cloth, Frame, frame_of
 from meshdrape.study.fold.lay import FoldDrape, lay
 from meshdrape.study.fold.limits import limits
-from meshdrape.study.fold.mould import cad_mould
+from meshdrape.study.fold.mould import CadMould, cad_mould
 from meshdrape.study.fold.nearest import nearest_spar
 from meshdrape.study.fold.notices import notices
 from meshdrape.study.fold.ways import ways
@@ -25,10 +26,14 @@ Step = Callable[[int], None]
 
 def drape_design(design: Design) -> FoldDrape:
     """The full drape of a design on its CAD mould, from a row that stays on the side laid first."""
+    frame, gamma, cloth = _cloth(design)
+    return lay(cloth, cad_mould(design, frame, cloth), gamma, design.locking_angle)
+
+
+def _cloth(design: Design) -> tuple[Frame, float, Cloth]:
     frame = frame_of(design)
     gamma = frame.gamma(design.gamma)
-    cloth = Cloth.of(frame, design.spacing, design.row_offset, gamma)
-    return lay(cloth, cad_mould(design, frame, cloth), gamma, design.locking_angle)
+    return frame, gamma, Cloth.of(frame, design.spacing, design.row_offset, gamma)
 
 
 def fold_answer(
@@ -69,18 +74,28 @@ def fold_answer(
         now = time.perf_counter()
         seconds[name], last = now - last, now
 
-    stage("draping the design", None)
-    drape = drape_design(design)
-    lap("drape")
-    stage("comparing", None)
+    with CadMould() as mould:
+        frame, gamma, cloth = _cloth(design)
+        mould.begin(design, frame, cloth)
+        # what needs no CAD mould is found out while that is made
+        stage("looking for the largest factor", None)
+        try:
+            found = limits(design, step)
+            lap("limits")
+            stage("comparing ways to lay it", None)
+            laying = ways(design)
+            lap("ways")
+        except MeshdrapeError:
+            mould.made()  # what keeps it from being a mould at all is told first
+            raise
+        stage("draping the design", None)
+        drape = lay(cloth, mould.made(), gamma, design.locking_angle)
+        lap("drape")
+    stage("comparing criteria", None)
     said = verdict(design, drape)
     places = where(drape, design.locking_angle)
     warned = notices(design, drape, said)
-    laying = ways(design)
     lap("criteria")
-    stage("looking for the largest factor", None)
-    found = limits(design, step)
-    lap("limits")
     stage("looking for the nearest spar", None)
     near = nearest_spar(design, drape, nearest, step)
     lap("nearest")

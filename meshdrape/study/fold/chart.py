@@ -74,12 +74,16 @@ def envelope(
             for a in range(shape[0])
             for b, w in enumerate(wavelength)
         }
-        for done, task in enumerate(as_completed(tasks), start=1):
-            shear = task.result()
-            if shear is not None:
-                wing_fed[tasks[task]], ribbon_fed[tasks[task]] = shear.wing_fed, shear.ribbon_fed
-            if step is not None:
-                step(done)
+        try:
+            for done, task in enumerate(as_completed(tasks), start=1):
+                shear = task.result()
+                if shear is not None:
+                    wing_fed[tasks[task]], ribbon_fed[tasks[task]] = shear.wing_fed, shear.ribbon_fed
+                if step is not None:
+                    step(done)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)  # Ctrl-C, above all, must not wait for the rest of the chart
+            raise
     return Envelope(
         family=family,
         amplitude=amplitude,

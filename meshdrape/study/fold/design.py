@@ -123,7 +123,9 @@ class Design:
 
     def with_deviation(self, deviation: Shape) -> Design:
         """The same wing with another f."""
-        return replace(self, spar=None, deviation=deviation)
+        other = replace(self, spar=None, deviation=deviation)
+        vars(other)["wing_profile"] = self.wing_profile  # with what is known of it: its arc lengths
+        return other
 
 
 def read_design(path: str | PathLike[str]) -> Design:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.study.fold.design import Design
-from meshdrape.theory import Fold, Sheet, within_reach
+from meshdrape.theory import Fold, WingLattice, ribbon_reach, turning_points
 
 FloatArray = NDArray[np.float64]
 
@@ -72,9 +72,9 @@ class Frame:
 
         Which columns come down to ribbon-fed rows depends a little on gamma where the crease falls at first.
         """
-        gamma = 0.0
+        gamma, turns = 0.0, turning_points(self.fold)
         for _ in range(20):
-            new = within_reach(self.fold, self.height, gamma).gamma_best
+            new = ribbon_reach(self.fold, self.height, gamma, turns).gamma_best
             if abs(new - gamma) < 1e-10:
                 break
             gamma = new
@@ -114,7 +114,7 @@ class Cloth:
     @classmethod
     def of(cls, frame: Frame, spacing: float, row_offset: float, gamma: float) -> Cloth:
         """The lattice that covers a frame."""
-        sheet = Sheet(frame.fold, spacing, frame.height, gamma, row_offset)
+        sheet = WingLattice(frame.fold, spacing, frame.height, gamma, row_offset)
         return cls(frame, spacing, row_offset, len(sheet.s), len(sheet.x), sheet.first_row)
 
     @property

@@ -15,7 +15,7 @@ from meshdrape.study.fold.mould import FoldMould
 from meshdrape.theory import NEITHER, RIBBON_FED, WING_FED
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.measures import measure
+from meshdrape.weave.measures import shear_of_cells
 from meshdrape.weave.net import Net
 from meshdrape.weave.status import NodeStatus
 
@@ -114,7 +114,7 @@ def read(cloth: Cloth, mould: FoldMould, gamma: float, net: Net) -> FoldDrape:
     shape = (cloth.columns, cloth.rows)
     node = _window(net.node_position, i, j, (*shape, 3), np.nan)
     status = _window(net.node_status, i, j, shape, np.uint8(NodeStatus.OUTSIDE))
-    shear = _window(measure(net).cell_shear, i, j, (shape[0] - 1, shape[1] - 1), np.nan)
+    shear = _window(shear_of_cells(net), i, j, (shape[0] - 1, shape[1] - 1), np.nan)
     on = _on_spar(cloth, mould, node)
     crease_z = np.interp(node[..., 1], mould.crease[:, 1], mould.crease[:, 2])
     frame = cloth.frame

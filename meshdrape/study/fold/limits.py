@@ -14,7 +14,7 @@ from meshdrape.study.fold.design import Design
 from meshdrape.study.fold.frame import Cloth, Frame, frame_of
 from meshdrape.study.fold.lay import FoldDrape, lay
 from meshdrape.study.fold.mould import ruled_mould
-from meshdrape.theory import Fold, Reach, within_reach
+from meshdrape.theory import Fold, Reach, ribbon_reach, within_reach
 
 # The drape at the factor found locks within this of the angle, rad, and not past it.
 TOLERANCE = math.radians(0.004)
@@ -84,7 +84,7 @@ class _Search:
         elif (gamma := self.gamma(frame, rule)) == 0:
             ribbon_fed = reach.ribbon_fed.shear
         else:
-            ribbon_fed = within_reach(frame.fold, frame.height, gamma).ribbon_fed.shear
+            ribbon_fed = ribbon_reach(frame.fold, frame.height, gamma).ribbon_fed.shear
         return max(reach.wing_fed.shear, ribbon_fed)
 
     def lay(self, factor: float, rule: str) -> FoldDrape | None:

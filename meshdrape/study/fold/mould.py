@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.errors import DesignError, FileError
+from meshdrape.mould.apart import ScriptApart
 from meshdrape.mould.library import build_script
 from meshdrape.mould.mould import Mould
 from meshdrape.study.fold.design import Design, Shape
@@ -69,7 +71,10 @@ def ruled_mould(frame: Frame, cloth: Cloth, turn: float = RULED_TURN, facets: in
     # counter-clockwise about +z on the wing and about -x on the spar
     wing = np.concatenate([np.stack([a, a + k, a + k + 1], 1), np.stack([a, a + k + 1, a + 1], 1)])
     spar = np.concatenate([np.stack([a, a + 1, a + 2 * k + 1], 1), np.stack([a, a + 2 * k + 1, a + 2 * k], 1)])
-    return FoldMould(Mould.from_arrays(np.concatenate([crease, trailing, hem]), np.concatenate([wing, spar])), crease)
+    triangles = np.concatenate([wing, spar])
+    # two strips sewn along the crease: nothing that would have to be examined
+    mould = Mould(np.concatenate([crease, trailing, hem]), triangles, np.zeros(len(triangles), dtype=np.int64))
+    return FoldMould(mould, crease)
 
 
 def facet_bounds(frame: Frame, turn: float, facets: int) -> tuple[FloatArray, float]:
@@ -95,6 +100,34 @@ def cad_mould(design: Design, frame: Frame, cloth: Cloth) -> FoldMould:
     Wing and spar are made wide enough for the sheet's first row to lie on the side laid first all along; the script
     cuts them parallel to the crease.
     """
+    asked = _script(design, frame, cloth)
+    return _in_frame(lambda: build_script(*asked), frame)
+
+
+class CadMould:
+    """`cad_mould` in a process of its own, which begins to get ready at once; leave the block to give it up."""
+
+    def __init__(self) -> None:
+        self._script = ScriptApart()
+
+    def begin(self, design: Design, frame: Frame, cloth: Cloth) -> None:
+        """Have the mould made; arguments as of `cad_mould`."""
+        self._frame = frame
+        self._script.ask(*_script(design, frame, cloth))
+
+    def made(self) -> FoldMould:
+        """Wait for it."""
+        return _in_frame(self._script.mould, self._frame)
+
+    def __enter__(self) -> CadMould:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._script.close()
+
+
+def _script(design: Design, frame: Frame, cloth: Cloth) -> tuple[str, dict[str, Any], float, float]:
+    """The script, its parameters, and the tolerances of its tessellation."""
     chord, height = design.chord, design.spar_height
     if frame.first == "spar":
         height = max(height, cloth.width + cloth.spacing)
@@ -102,8 +135,12 @@ def cad_mould(design: Design, frame: Frame, cloth: Cloth) -> FoldMould:
         chord = max(chord, cloth.width + cloth.spacing)
     parameters = {"span": design.span, "chord": max(chord, height), "spar_height": height, **_shapes(design)}
     _, turn = facet_bounds(frame, CAD_TURN, CAD_FACETS)
+    return "wing_spar", parameters, CAD_CHORD, turn
+
+
+def _in_frame(script: Callable[[], Mould], frame: Frame) -> FoldMould:
     try:
-        made = build_script("wing_spar", parameters, CAD_CHORD, turn)
+        made = script()
     except FileError as error:
         msg = f"no CAD mould of this design: {error}"
         raise DesignError(msg) from None
