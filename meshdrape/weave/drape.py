@@ -120,7 +120,7 @@ def drape(
     if seed.shape != (3,) or not np.isfinite(seed).all():
         msg = f"seed {seed.tolist()} is not a point; give X,Y,Z in mm"
         raise StartError(msg)
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    longest = fabric.longest
     point, distance = whole.closest_point(seed)
     if distance > longest:
         near = ", ".join(f"{v:.6g}" for v in point.position(whole))
@@ -208,12 +208,12 @@ def _check_request(
     if engine not in ENGINES:
         msg = f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}"
         raise StartError(msg)
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    longest = fabric.longest
     size = mould.surface.diagonal
     if longest > size:
         msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
         raise FabricError(msg)
-    shortest = min(fabric.warp_spacing, fabric.weft_spacing)
+    shortest = fabric.shortest
     if shortest < ROUND_OFF * size:
         msg = (
             f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"

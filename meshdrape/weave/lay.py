@@ -152,7 +152,7 @@ def _with_bays(
 
 def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:
     """Depth of the collar, mm."""
-    depth = COLLAR_DEPTH * max(fabric.warp_spacing, fabric.weft_spacing)
+    depth = COLLAR_DEPTH * fabric.longest
     for course, sides in zip(courses, ((0, 1), (2, 3)), strict=True):
         if course.turn is not None:
             longest = part.diagonal if extent is None else min(part.diagonal, max(extent[k] for k in sides))
