@@ -9,7 +9,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshdrape.cli.main import DONE
+from meshdrape.cli.main import DONE, UNJUDGED
 from meshdrape.cli.progress import Progress
 
 if TYPE_CHECKING:
@@ -52,7 +52,14 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         sys.stdout.write(json_text(_facts(recomputed, files, seconds)))
     else:
         sys.stdout.write(_report(recomputed, files, seconds))
-    return DONE
+    return UNJUDGED if _unjudged(recomputed) else DONE
+
+
+def _unjudged(recomputed: Recomputed) -> list[str]:
+    """Places of the claims for which a number was missing."""
+    from meshdrape.study.claims import Verdict
+
+    return [claim.place for claim in recomputed.claims if claim.verdict is Verdict.NOT_FOUND]
 
 
 def _facts(recomputed: Recomputed, files: list[Path], seconds: float) -> dict[str, Any]:
@@ -83,5 +90,7 @@ def _report(recomputed: Recomputed, files: list[Path], seconds: float) -> str:
     lines.append(
         f"{len(recomputed.claims)} claims in {seconds:.0f} s: " + ", ".join(f"{n} {name}" for name, n in counted)
     )
+    if missing := _unjudged(recomputed):
+        lines.append(f"WARNING  no verdict for want of numbers: {', '.join(missing)}")
     lines.append(f"wrote {files[0]} and {len(files) - 1} pictures beside it")
     return "\n".join(lines) + "\n"
