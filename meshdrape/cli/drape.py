@@ -73,7 +73,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     out.add_argument(
         "--refine",
         action="store_true",
-        help="drape on two coarser tessellations too, for an error bar of the maximum shear; not of a mesh file",
+        help="drape on two coarser tessellations too, for an error bar of the maximum shear; not of a mesh file "
+        "nor with --stop-at",
     )
     out.add_argument(
         "--engine",
@@ -104,7 +105,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         if options.refine:
             from meshdrape.study.convergence import require_refinable
 
-            require_refinable(mould)
+            require_refinable(mould, options.stop_at)
         clock.lap("mould")
 
         from meshdrape.geodesic.guarded import prepare
@@ -146,7 +147,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             from meshdrape.study import refine
 
             progress.stage("draping on coarser facets")
-            refined = refine(mould, fabric, extent=options.extent, net=net, threads=options.threads)
+            refined = refine(mould, fabric, net=net, threads=options.threads)
             clock.lap("refinement")
         progress.stage("writing")
         progress.step(0)

@@ -15,7 +15,7 @@ from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
-from meshdrape.weave.net import Net
+from meshdrape.weave.net import Net, Request
 from meshdrape.weave.prescribed import courses_on, prescribe
 from meshdrape.weave.recross import creases_of, end_where_recrossed
 from meshdrape.weave.start import part_under
@@ -174,6 +174,7 @@ def drape(
         direction=start.tangent[0, 0] * frame[3:6] + start.tangent[0, 1] * frame[6:9],
         collar_depth=laid.collar_depth,
         start_fibres=given,
+        request=Request(engine, extent, stop_at, recrossing),
         notes=tuple(notes),
         settled_by_libigl=laid.settled,
         libigl_seconds=laid.seconds,
