@@ -116,6 +116,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("imports")
         progress.stage("draping")
         prepare()
+        # each of these may compile kernels of its own on the first run
         with compilation_told(options.quiet):
             net = drape(
                 mould,
@@ -133,15 +134,15 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
                 threads=options.threads,
                 progress=progress.step,
             )
-        clock.lap("drape")
-        progress.stage("measuring")
-        measures = measure(net)
-        progress.step(0)
-        field = read_off(measures, options.reference)
-        foretold = balance(measures)
-        clock.lap("measures")
-        audited = audit(net, AUDIT_EDGES, seconds=AUDIT_SECONDS)
-        clock.lap("audit")
+            clock.lap("drape")
+            progress.stage("measuring")
+            measures = measure(net)
+            progress.step(0)
+            field = read_off(measures, options.reference)
+            foretold = balance(measures)
+            clock.lap("measures")
+            audited = audit(net, AUDIT_EDGES, seconds=AUDIT_SECONDS)
+            clock.lap("audit")
         refined = None
         if options.refine:
             from meshdrape.study import refine

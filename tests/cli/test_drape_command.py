@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,8 @@ from meshfiles import binary_stl
 from moulds import cap, grid, icosphere, plate
 
 import meshdrape
+from meshdrape import weave
+from meshdrape.cli import drape as drape_command
 from meshdrape.cli.main import main
 from meshdrape.weave import read_off
 from meshdrape.weave.noise import mesh_noise
@@ -105,6 +109,30 @@ def test_summary_agrees_with_the_public_names(whole, dome, through_api):
     assert summary["mould"]["triangles"] == len(mould.triangles)
     assert summary["mould"]["sha256"] == mould.sha256
     assert summary["mould"]["area_mm2"] == pytest.approx(mould.surface.face_area.sum())
+
+
+def test_whatever_compiles_is_told_of(flat, tmp_path, monkeypatch):
+    """Measuring and the audit have kernels of their own: the notice of the first run is not over before them."""
+    inside, seen = [], {}
+
+    @contextmanager
+    def told(quiet):
+        inside.append(quiet)
+        yield
+        inside.pop()
+
+    def watched(module, name):
+        real = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *words, **named: seen.update({name: bool(inside)})
+                            or real(*words, **named))  # fmt: skip
+
+    monkeypatch.setattr(drape_command, "compilation_told", told)
+    for name in ("drape", "measure", "read_off", "audit"):
+        watched(weave, name)
+    watched(sys.modules["meshdrape.weave.balance"], "balance")
+    assert main(["drape", str(flat), "-o", str(tmp_path / "net.ply"), "--spacing", "20", "--no-picture"]) == 0
+    assert seen == dict.fromkeys(("drape", "measure", "read_off", "audit", "balance"), True)
+    assert not inside
 
 
 def test_net_file_holds_the_net_of_the_public_names(whole, through_api):
