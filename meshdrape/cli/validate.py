@@ -15,13 +15,13 @@ from meshdrape.cli.progress import Progress
 if TYPE_CHECKING:
     from meshdrape.study.claims import Recomputed
 
-PAGE = "docs/validation.md"
+PAGE, SUFFIXES = "docs/validation.md", (".md", ".markdown")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("-o", "--output", default=PAGE, metavar="PAGE.md",
-                        help=f"the page; its pictures go into a folder PAGE beside it ({PAGE})")  # fmt: skip
+                        help=f"the page, Markdown; its pictures go into a folder PAGE beside it ({PAGE})")  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="coarser drapes and fewer of them, for a first look")
     parser.add_argument("--json", action="store_true", help="print the claims as JSON")
 
@@ -29,10 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
     """Recompute, write the page and its pictures, print the verdicts."""
     del arguments
-    from meshdrape.output.files import check_target
+    from meshdrape.output.files import check_suffix, check_target
 
     begun = time.perf_counter()
     page = Path(options.output)
+    check_suffix(page, SUFFIXES, "the page")
     check_target(page)
     with Progress(options.json) as progress:
         progress.stage("importing")

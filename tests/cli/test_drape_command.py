@@ -68,6 +68,15 @@ def through_api(dome):
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("suffix", [".json", ".png", ".stl", ""])
+def test_a_net_is_written_as_ply(capfd, flat, tmp_path, suffix):
+    """Under the name of one of its companions it would be lost beneath that one."""
+    outcome = run(capfd, "drape", flat, "-o", tmp_path / f"net{suffix}", "--spacing", 20)
+    assert (outcome.code, outcome.out, outcome.err.count("\n")) == (2, "", 1)
+    assert f"net{suffix} has the suffix {suffix or '(none)'}; a net is written as .ply" in outcome.err
+    assert not list(tmp_path.iterdir())
+
+
 # --- files ------------------------------------------------------------------------------------------------------------
 
 

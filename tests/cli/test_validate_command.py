@@ -78,6 +78,16 @@ def test_a_claim_without_numbers_is_told_loudly(capfd, tmp_path, monkeypatch):
         assert ("WARNING  no verdict for want of numbers: (99)\n" in outcome.out) == bool(code)
 
 
+@pytest.mark.parametrize(("name", "suffix"), [("x.txt", ".txt"), ("page", "(none)"), ("page.html", ".html")])
+def test_the_page_is_markdown(capfd, tmp_path, name, suffix):
+    """Nothing is computed for a page that no reader of Markdown would open, or whose pictures have no folder."""
+    outcome = run(capfd, "validate", "-o", tmp_path / name)
+    assert (outcome.code, outcome.out) == (2, "")
+    said = f"{tmp_path / name} has the suffix {suffix}; the page is written as .md .markdown\n"
+    assert outcome.err == f"meshdrape: {said}"
+    assert not list(tmp_path.iterdir())
+
+
 def test_refused_before_anything_is_computed(capfd, tmp_path):
     outcome = run(capfd, "validate", "-o", tmp_path / "no" / "page.md")
     assert outcome.code == 2
