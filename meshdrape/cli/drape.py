@@ -93,9 +93,9 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     from meshdrape.weave.fabric import Fabric
 
     net_path = Path(options.output)
+    check_target(net_path)
     # the other files take its name with their own suffixes: one of these would be written over it
     check_suffix(net_path, (".ply",), "a net")
-    check_target(net_path)
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
     warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()

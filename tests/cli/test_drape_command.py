@@ -397,6 +397,15 @@ def test_fibre_angles_are_told_from_the_reference(capfd, flat, tmp_path, referen
         assert (found["min"], found["mean"], found["max"]) == pytest.approx((expected,) * 3, abs=1e-6)
 
 
+def test_angles_across_the_reference_are_not_cut_at_a_right_angle(capfd, dome, tmp_path):
+    """The same cloth, counted from an axis along it and from one across it: the range turns with the axis."""
+    start = ("--spacing", SPACING, "--seed", "50,30,990", "--direction", "1,0,0")
+    along = draped(capfd, dome, tmp_path / "net.ply", *start, "--reference", "1,0,0")["warp_angle_deg"]
+    weft = draped(capfd, dome, tmp_path / "net.ply", *start, "--reference", "1,0,0")["weft_angle_deg"]
+    assert along["min"] < along["mean"] < along["max"] < along["min"] + 90
+    assert 45 < weft["min"] < weft["mean"] < 90 < weft["max"] < 135 or -135 < weft["min"] < -90 < weft["max"] < -45
+
+
 def test_seed_off_the_mould_is_projected_and_the_distance_told(capfd, flat, tmp_path):
     summary = draped(capfd, flat, tmp_path / "net.ply", "--spacing", 10, "--seed", "20,10,7.5")
     assert summary["seed_distance_mm"] == pytest.approx(7.5, abs=1e-6)
