@@ -94,7 +94,7 @@ def _balance(summary: dict[str, Any]) -> str:
     at = summary["balance_residual_at"]
     where = "" if at is None else f", worst at ({_list(at)})"
     off, lock = summary["balance_residual_deg"], summary["fabric"]["locking_angle_deg"]
-    text = f"shear is within {off:.2g} deg of what the enclosed curvature asks for{where}"
+    text = f"shear within {off:.2g} deg of the enclosed curvature's{where}"
     if off < WORTH_A_WORD * lock:
         return text
     # a corner of the mould in the same row of cells: half of it is counted, whichever side of the middle it lies on
