@@ -132,6 +132,6 @@ def _report(stored: StoredNet, found: Recheck) -> str:
         ("", f"long; {found.n_unchecked:,} with an end off the mould not checked"),
         ("libigl", f"{edges.n_edges:,} measured, largest relative error {edges.max_relative_error:.1e}"),
         ("shear", f"{found.n_shear:,} cells measured again, to {math.degrees(found.shear_error):.1e} deg"),
-        ("balance", f"shear agrees with the enclosed curvature to {math.degrees(found.balance_residual):.2g} deg"),
+        ("balance", f"shear within {math.degrees(found.balance_residual):.2g} deg of the enclosed curvature's"),
     ]
     return "".join(f"{name:>10}  {text}\n" for name, text in rows)

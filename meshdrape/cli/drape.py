@@ -73,7 +73,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     out.add_argument(
         "--refine",
         action="store_true",
-        help="drape on two coarser tessellations too, for an error bar of the maximum shear; not of a mesh file",
+        help="drape on two coarser tessellations too, for an error bar of the maximum shear; not of a mesh file "
+        "nor with --stop-at",
     )
     out.add_argument(
         "--engine",
@@ -88,11 +89,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
     """Drape, write every file, print the summary."""
-    from meshdrape.output.files import check_target
+    from meshdrape.output.files import check_suffix, check_target
     from meshdrape.weave.fabric import Fabric
 
     net_path = Path(options.output)
     check_target(net_path)
+    # the other files take its name with their own suffixes: one of these would be written over it
+    check_suffix(net_path, (".ply",), "a net")
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
     warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()
@@ -104,7 +107,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         if options.refine:
             from meshdrape.study.convergence import require_refinable
 
-            require_refinable(mould)
+            require_refinable(mould, options.stop_at)
         clock.lap("mould")
 
         from meshdrape.geodesic.guarded import prepare
@@ -115,6 +118,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("imports")
         progress.stage("draping")
         prepare()
+        # each of these may compile kernels of its own on the first run
         with compilation_told(options.quiet):
             net = drape(
                 mould,
@@ -132,21 +136,21 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
                 threads=options.threads,
                 progress=progress.step,
             )
-        clock.lap("drape")
-        progress.stage("measuring")
-        measures = measure(net)
-        progress.step(0)
-        field = read_off(measures, options.reference)
-        foretold = balance(measures)
-        clock.lap("measures")
-        audited = audit(net, AUDIT_EDGES, seconds=AUDIT_SECONDS)
-        clock.lap("audit")
+            clock.lap("drape")
+            progress.stage("measuring")
+            measures = measure(net)
+            progress.step(0)
+            field = read_off(measures, options.reference)
+            foretold = balance(measures)
+            clock.lap("measures")
+            audited = audit(net, AUDIT_EDGES, seconds=AUDIT_SECONDS)
+            clock.lap("audit")
         refined = None
         if options.refine:
             from meshdrape.study import refine
 
             progress.stage("draping on coarser facets")
-            refined = refine(mould, fabric, extent=options.extent, net=net, threads=options.threads)
+            refined = refine(mould, fabric, net=net, threads=options.threads)
             clock.lap("refinement")
         progress.stage("writing")
         progress.step(0)

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 from meshdrape.cli.main import DONE
 from meshdrape.cli.progress import Progress, compilation_told
-from meshdrape.errors import FileError
+from meshdrape.errors import DesignError
 
 if TYPE_CHECKING:
     from meshdrape.study.fold import FoldAnswer
 
 SUFFIXES = (".html", ".json")
+FAMILY = "sine"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--chart", nargs="?", const=(20, 20), type=_grid, metavar="AxB",
         help="drape A amplitudes x B wavelengths of a family of f (20x20); takes a minute or more",
     )  # fmt: skip
-    chart.add_argument("--family", choices=("sine", "ripple", "bump"), default="sine", help="the family of f (sine)")
+    chart.add_argument("--family", choices=("sine", "ripple", "bump"), help="the family of f (sine)")
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
@@ -57,14 +58,15 @@ def _grid(text: str) -> tuple[int, int]:
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
     """Answer, write, print."""
     del arguments
-    from meshdrape.output.files import check_target
+    from meshdrape.output.files import check_suffix, check_target
     from meshdrape.study.fold.design import read_design
 
+    if options.family and not options.chart:
+        msg = f"--family {options.family} is the family of f that a chart varies: ask for one with --chart"
+        raise DesignError(msg)
     targets = [Path(name) for name in options.output]
     for target in targets:
-        if target.suffix.lower() not in SUFFIXES:
-            msg = f"{target} has the suffix {target.suffix or '(none)'}; an answer is written as {' '.join(SUFFIXES)}"
-            raise FileError(msg)
+        check_suffix(target, SUFFIXES, "an answer")
         check_target(target)
     design = read_design(options.design)
     with Progress(options.quiet) as progress:
@@ -76,7 +78,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
                 design,
                 nearest=options.nearest,
                 chart=options.chart,
-                family=options.family,
+                family=options.family or FAMILY,
                 stage=progress.stage,
                 step=progress.step,
             )

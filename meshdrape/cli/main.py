@@ -13,7 +13,7 @@ from meshdrape import __version__
 from meshdrape.cli import interrupt
 from meshdrape.errors import MeshdrapeError
 
-DONE, BAD_INPUT, FABRIC_MISSING, INTERRUPTED = 0, 2, 3, 130
+DONE, BAD_INPUT, FABRIC_MISSING, UNJUDGED, INTERRUPTED = 0, 2, 3, 3, 130
 
 COMMANDS = {
     "drape": "lay a fabric on a mould and write the net",

@@ -62,13 +62,11 @@ def _make(script: Script, options: argparse.Namespace) -> dict[str, Any]:
     """Make the mould, write it, and return what there is to say of it."""
     from meshdrape.mould import export, library
     from meshdrape.mould.brep import cad_faces
-    from meshdrape.output.files import atomic_write, check_target
+    from meshdrape.output.files import atomic_write, check_suffix, check_target
 
     target = Path(options.output)
     suffix = target.suffix.lower()
-    if suffix not in export.SUFFIXES:
-        msg = f"{target} has the suffix {suffix or '(none)'}; a mould is written as {' '.join(export.SUFFIXES)}"
-        raise FileError(msg)
+    check_suffix(target, export.SUFFIXES, "a mould")
     check_target(target)
     parameters = parameters_set(options)
     shape = library.build_shape(script.name, parameters)

@@ -9,19 +9,19 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshdrape.cli.main import DONE
+from meshdrape.cli.main import DONE, UNJUDGED
 from meshdrape.cli.progress import Progress
 
 if TYPE_CHECKING:
     from meshdrape.study.claims import Recomputed
 
-PAGE = "docs/validation.md"
+PAGE, SUFFIXES = "docs/validation.md", (".md", ".markdown")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("-o", "--output", default=PAGE, metavar="PAGE.md",
-                        help=f"the page; its pictures go into a folder PAGE beside it ({PAGE})")  # fmt: skip
+                        help=f"the page, Markdown; its pictures go into a folder PAGE beside it ({PAGE})")  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="coarser drapes and fewer of them, for a first look")
     parser.add_argument("--json", action="store_true", help="print the claims as JSON")
 
@@ -29,10 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
     """Recompute, write the page and its pictures, print the verdicts."""
     del arguments
-    from meshdrape.output.files import check_target
+    from meshdrape.output.files import check_suffix, check_target
 
     begun = time.perf_counter()
     page = Path(options.output)
+    check_suffix(page, SUFFIXES, "the page")
     check_target(page)
     with Progress(options.json) as progress:
         progress.stage("importing")
@@ -52,7 +53,14 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         sys.stdout.write(json_text(_facts(recomputed, files, seconds)))
     else:
         sys.stdout.write(_report(recomputed, files, seconds))
-    return DONE
+    return UNJUDGED if _unjudged(recomputed) else DONE
+
+
+def _unjudged(recomputed: Recomputed) -> list[str]:
+    """Places of the claims for which a number was missing."""
+    from meshdrape.study.claims import Verdict
+
+    return [claim.place for claim in recomputed.claims if claim.verdict is Verdict.NOT_FOUND]
 
 
 def _facts(recomputed: Recomputed, files: list[Path], seconds: float) -> dict[str, Any]:
@@ -83,5 +91,7 @@ def _report(recomputed: Recomputed, files: list[Path], seconds: float) -> str:
     lines.append(
         f"{len(recomputed.claims)} claims in {seconds:.0f} s: " + ", ".join(f"{n} {name}" for name, n in counted)
     )
+    if missing := _unjudged(recomputed):
+        lines.append(f"WARNING  no verdict for want of numbers: {', '.join(missing)}")
     lines.append(f"wrote {files[0]} and {len(files) - 1} pictures beside it")
     return "\n".join(lines) + "\n"

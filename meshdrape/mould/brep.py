@@ -128,8 +128,9 @@ def select(
     if ids is not None:
         unknown = [number for number in ids if not 1 <= number <= len(listed)]
         if unknown or not ids:
+            its_faces = f"its faces are 1 to {len(listed)}" if len(listed) > 1 else "its only face is 1"
             what = f"has no face {', '.join(map(str, unknown))}" if unknown else "was given no face to choose"
-            msg = f"{origin} {what}: its faces are 1 to {len(listed)}; {way_out}"
+            msg = f"{origin} {what}: {its_faces}; {way_out}"
             raise SelectionError(msg, listed)
         return tuple(sorted(set(ids)))
     return _by_selector(shape, listed, str(faces), origin, way_out)

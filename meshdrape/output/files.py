@@ -3,7 +3,7 @@
 import errno
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -65,6 +65,14 @@ def check_target(path: str | os.PathLike[str]) -> None:
     if target.exists() and not target.is_file():
         # renaming over a device such as /dev/null would replace the device
         msg = f"cannot write {path}: it is not a regular file; give the name of a file"
+        raise FileError(msg)
+
+
+def check_suffix(path: str | os.PathLike[str], suffixes: Sequence[str], what: str) -> None:
+    """Raise FileError if a file's name does not end as that of `what` does: (".md",), "a page"."""
+    suffix = Path(path).suffix
+    if suffix.lower() not in suffixes:
+        msg = f"{path} has the suffix {suffix or '(none)'}; {what} is written as {' '.join(suffixes)}"
         raise FileError(msg)
 
 

@@ -101,7 +101,7 @@ def _view(mould: Mould, cells: DrawnCells) -> tuple[View, int]:
 
 def _quad_size(net: Net, cells: DrawnCells) -> float:
     """Return the longest side of the drawn quads, mm."""
-    return cells.block * max(net.fabric.warp_spacing, net.fabric.weft_spacing)
+    return cells.block * net.fabric.longest
 
 
 def _add_mould(stage: Stage, mould: Mould, back: float) -> None:

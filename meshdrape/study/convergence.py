@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from meshdrape.errors import MouldError
+from meshdrape.errors import MouldError, StartError
 from meshdrape.mould.read import read_mould
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
@@ -88,6 +88,12 @@ def refine(
     direction: ArrayLike | None = None,
     extent: tuple[float, float, float, float] | None = None,
     *,
+    engine: str = "fast",
+    warp_turn: float | None = None,
+    weft_turn: float | None = None,
+    warp_path: ArrayLike | None = None,
+    weft_path: ArrayLike | None = None,
+    recrossing: bool = False,
     net: Net | None = None,
     threads: int | None = None,
 ) -> Convergence:
@@ -98,15 +104,18 @@ def refine(
     mould : Mould
         Of a B-rep or a script, read from its file: the file is read again with both tolerances doubled, and doubled
         once more.
-    fabric, seed, direction, extent, threads
+    fabric, seed, direction, extent, engine, warp_turn, weft_turn, warp_path, weft_path, recrossing, threads
         As for :func:`meshdrape.drape`.
     net : Net, optional
-        The drape on `mould` itself, where it is at hand.
+        The drape on `mould` itself, where it is at hand: what was asked for it is asked again, start fibres and all,
+        and nothing else given here counts but the threads.
 
     Raises
     ------
     MouldError
         If the mould is a mesh, which has nothing finer behind it.
+    StartError
+        If `net` was told at which shear to stop, which is then its largest, whatever the facets.
 
     Notes
     -----
@@ -115,20 +124,34 @@ def refine(
     maximum wanders from cell to cell and facets err at random, so two maxima may agree by chance: the bar is never
     below the mesh's own noise.
     """
-    require_refinable(mould)
     if net is None:
-        net = drape(mould, fabric, seed, direction, extent=extent, threads=threads)
+        require_refinable(mould)
+        net = drape(
+            mould,
+            fabric,
+            seed,
+            direction,
+            engine,
+            extent,
+            warp_turn=warp_turn,
+            weft_turn=weft_turn,
+            warp_path=warp_path,
+            weft_path=weft_path,
+            recrossing=recrossing,
+            threads=threads,
+        )
+    require_refinable(mould, net.request.stop_at)
     nets = [net]
     for power in (1, 2):
         coarse = _read_again(mould, RATIO**power)
         # the very same start, on the coarser facets
         at = coarse.surface.closest_point(net.seed)[0].position(coarse.surface)
-        nets.insert(0, drape(coarse, fabric, at, net.direction, extent=extent, threads=threads))
+        nets.insert(0, _laid_alike(net, coarse, fabric, at, threads))
     maxima = [_max_shear(measure(each)) for each in nets]
     noise = mesh_noise(net.surface.mould_part)
     order, error = extrapolated(*maxima)
     twice = Fabric((2 * fabric.warp_spacing, 2 * fabric.weft_spacing), fabric.initial_angle, fabric.locking_angle)
-    wide = drape(mould, twice, net.seed, net.direction, extent=extent, threads=threads)
+    wide = _laid_alike(net, mould, twice, net.seed, threads)
     moulds = [each.mould for each in nets]
     return Convergence(
         triangles=_three(len(each.triangles) for each in moulds),
@@ -142,8 +165,34 @@ def refine(
     )
 
 
-def require_refinable(mould: Mould) -> None:
-    """Raise MouldError if a mould has no file of exact faces behind it."""
+def _laid_alike(net: Net, mould: Mould, fabric: Fabric, seed: ArrayLike, threads: int | None) -> Net:
+    """Another mould or fabric, with all that was asked for a net."""
+    fibres, request = net.start_fibres, net.request
+    return drape(
+        mould,
+        fabric,
+        seed,
+        net.direction,
+        request.engine,
+        request.extent,
+        warp_turn=fibres.warp_turn,
+        weft_turn=fibres.weft_turn,
+        warp_path=fibres.warp_path,
+        weft_path=fibres.weft_path,
+        stop_at=request.stop_at,
+        recrossing=request.recrossing,
+        threads=threads,
+    )
+
+
+def require_refinable(mould: Mould, stop_at: float | None = None) -> None:
+    """Raise MouldError if a mould has no file of exact faces behind it, StartError if the cloth is told to stop."""
+    if stop_at is not None:
+        msg = (
+            f"cloth that stops at {math.degrees(stop_at):g} degrees of shear has that for its largest, however fine "
+            f"the facets: refine it without a shear to stop at"
+        )
+        raise StartError(msg)
     if mould.source is None or mould.angle_tolerance is None:
         msg = (
             f"{mould.source or 'the mould'} is a mesh, its own truth: there is nothing finer to compare it with; "

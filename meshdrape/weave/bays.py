@@ -31,7 +31,7 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
     tolerance, slack = gap_tolerance(surface, fabric), border_slack(fabric)
     spacing = (fabric.warp_spacing, fabric.weft_spacing)
     mesh = surface.unfolding
-    table = detours(surface, max(fabric.warp_spacing, fabric.weft_spacing))
+    table = detours(surface, fabric.longest)
     report = np.zeros(5, dtype=np.int64)
     refused: list[tuple[int, int]] = []
     for _ in range(MOST_PASSES):

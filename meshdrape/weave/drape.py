@@ -15,7 +15,7 @@ from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.lay import lay, trim
 from meshdrape.weave.meeting import end_where_met
-from meshdrape.weave.net import Net
+from meshdrape.weave.net import Net, Request
 from meshdrape.weave.prescribed import courses_on, prescribe
 from meshdrape.weave.recross import creases_of, end_where_recrossed
 from meshdrape.weave.start import part_under
@@ -120,7 +120,7 @@ def drape(
     if seed.shape != (3,) or not np.isfinite(seed).all():
         msg = f"seed {seed.tolist()} is not a point; give X,Y,Z in mm"
         raise StartError(msg)
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    longest = fabric.longest
     point, distance = whole.closest_point(seed)
     if distance > longest:
         near = ", ".join(f"{v:.6g}" for v in point.position(whole))
@@ -174,6 +174,7 @@ def drape(
         direction=start.tangent[0, 0] * frame[3:6] + start.tangent[0, 1] * frame[6:9],
         collar_depth=laid.collar_depth,
         start_fibres=given,
+        request=Request(engine, extent, stop_at, recrossing),
         notes=tuple(notes),
         settled_by_libigl=laid.settled,
         libigl_seconds=laid.seconds,
@@ -208,12 +209,12 @@ def _check_request(
     if engine not in ENGINES:
         msg = f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}"
         raise StartError(msg)
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    longest = fabric.longest
     size = mould.surface.diagonal
     if longest > size:
         msg = f"spacing {longest:g} mm is larger than the mould, {size:g} mm across; check the unit of either"
         raise FabricError(msg)
-    shortest = min(fabric.warp_spacing, fabric.weft_spacing)
+    shortest = fabric.shortest
     if shortest < ROUND_OFF * size:
         msg = (
             f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"

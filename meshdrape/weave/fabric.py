@@ -62,3 +62,13 @@ class Fabric:
     def weft_spacing(self) -> float:
         """Distance between neighbouring nodes of a weft fibre, mm."""
         return self.spacing[1] if isinstance(self.spacing, tuple) else self.spacing
+
+    @property
+    def longest(self) -> float:
+        """The wider of the two spacings, mm."""
+        return max(self.warp_spacing, self.weft_spacing)
+
+    @property
+    def shortest(self) -> float:
+        """The narrower of the two spacings, mm."""
+        return min(self.warp_spacing, self.weft_spacing)

@@ -82,7 +82,7 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
     mould, mesh, fabric = net.mould, net.surface.unfolding, net.fabric
     total = mould.surface.area
     # triangles of the net's own size, unless that is too many: halving leaves about two in three of this area
-    longest = max(1.5 * max(fabric.warp_spacing, fabric.weft_spacing), float(np.sqrt(6.0 * total / most_triangles)))
+    longest = max(1.5 * fabric.longest, float(np.sqrt(6.0 * total / most_triangles)))
     vertices, triangles, parent = subdivided(mould.vertices, mould.triangles, longest, most_triangles)
     order = np.argsort(parent, kind="stable")
     triangles, parent = triangles[order], parent[order]

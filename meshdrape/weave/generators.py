@@ -239,7 +239,7 @@ def _keep_seed_edges(lattice: Lattice, start: Start, lengths: list[int]) -> None
 
 def border_slack(fabric: Fabric) -> float:
     """Distance from the border within which a node still counts as on the mould, mm."""
-    return BORDER_SLACK * min(fabric.warp_spacing, fabric.weft_spacing)
+    return BORDER_SLACK * fabric.shortest
 
 
 def empty_lattice(shape: tuple[int, int]) -> Lattice:

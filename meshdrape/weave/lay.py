@@ -37,6 +37,8 @@ COLLAR_DEPTH = 4.0
 # A fibre turned at a crease may leave the mould sideways while its rows still lie on it: the collar is then as deep as
 # this share of the longest way the fibre may run, whatever its turn: rows it does not feed keep their every bit.
 STRAY = 0.2
+# A drape of one spacing needs two collars at most: its own, and that of the coarse net which tells how far it reaches.
+COLLARS_KEPT = 2
 # Cells of cloth kept past the last that touches the mould.
 HEM = 2
 # A net of more nodes than this is first laid coarsely, with about that many nodes, to learn how far it reaches:
@@ -152,7 +154,7 @@ def _with_bays(
 
 def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses: Courses) -> float:
     """Depth of the collar, mm."""
-    depth = COLLAR_DEPTH * max(fabric.warp_spacing, fabric.weft_spacing)
+    depth = COLLAR_DEPTH * fabric.longest
     for course, sides in zip(courses, ((0, 1), (2, 3)), strict=True):
         if course.turn is not None:
             longest = part.diagonal if extent is None else min(part.diagonal, max(extent[k] for k in sides))
@@ -161,12 +163,15 @@ def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses:
 
 
 def _with_collar(part: Surface, depth: float) -> Surface:
-    """The surface with a collar; the last one made is kept with the surface for the next drape of the same spacing."""
-    kept: dict[float, Surface] = vars(part).setdefault("_collar", {})
-    if depth not in kept:
-        kept.clear()
-        kept[depth] = extended(part, depth)
-    return kept[depth]
+    """The surface with a collar; the last ones used are kept with it for the next drape of the same spacing."""
+    kept: dict[float, Surface] = vars(part).setdefault("_collars", {})
+    surface = kept.pop(depth, None)
+    if surface is None:
+        surface = extended(part, depth)
+        while len(kept) >= COLLARS_KEPT:
+            kept.pop(next(iter(kept)))
+    kept[depth] = surface
+    return surface
 
 
 def _reach(laid: Laid, fabric: Fabric) -> Extent:

@@ -35,7 +35,7 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     if _cannot_meet(mould):
         return 0
     mesh = surface.unfolding
-    spacing = min(fabric.warp_spacing, fabric.weft_spacing)
+    spacing = fabric.shortest
     diameter = surface.face_diameter
     small = mould.longest_edge < SMALL_FACE * spacing
     window = np.empty((len(diameter), 4), dtype=np.int64)
@@ -54,7 +54,7 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     position = np.full((*lattice.status.shape, 3), np.nan)
     frame = mesh.frame[lattice.face[i, j]]
     position[i, j] = frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
-    radius = max(fabric.warp_spacing, fabric.weft_spacing)
+    radius = fabric.longest
     return int(stop_where_met(mesh, lattice, start.origin, position, order, radius))
 
 

@@ -24,6 +24,25 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class Request:
+    """What a drape was asked besides fabric, start and start fibres; as for :func:`meshdrape.drape`.
+
+    Attributes
+    ----------
+    engine : str
+    extent : (warp-, warp+, weft-, weft+), mm, or None
+    stop_at : float or None
+        rad
+    recrossing : bool
+    """
+
+    engine: str = "fast"
+    extent: tuple[float, float, float, float] | None = None
+    stop_at: float | None = None
+    recrossing: bool = False
+
+
 @dataclass(frozen=True, eq=False)
 class Net:
     """The nodes of a sheet laid on a mould. i counts along the warp, j along the weft.
@@ -46,6 +65,8 @@ class Net:
         How far the surface goes on past the mould's border, mm.
     start_fibres : StartFibres
         What was prescribed of the generators.
+    request : Request
+        What else was asked; its defaults of a net read back from a file, which does not hold it.
     notes : tuple of str
         What the user should know of how the net was laid.
     settled_by_libigl : int
@@ -66,6 +87,7 @@ class Net:
     direction: FloatArray
     collar_depth: float = 0.0
     start_fibres: StartFibres = field(default_factory=StartFibres)
+    request: Request = Request()
     notes: tuple[str, ...] = ()
     settled_by_libigl: int = 0
     libigl_seconds: float = 0.0

@@ -163,7 +163,7 @@ def tracks_on(
     StartError
         If a path cannot be drawn, or two do not cross.
     """
-    longest = max(fabric.warp_spacing, fabric.weft_spacing)
+    longest = fabric.longest
     along = None if direction is None else unit_direction(direction)
     drawn = [
         None if points is None else draw(part, points, longest, f"{name}_path", called)
@@ -183,7 +183,7 @@ def tracks_on(
         if along is not None and float(run @ along) < 0:
             track = track.reversed()
         return ((track, None) if warp is not None else (None, track)), point
-    within = MEET * min(fabric.warp_spacing, fabric.weft_spacing)
+    within = MEET * fabric.shortest
     found, least, where = crossings(warp, weft, within)
     if not found:
         near = ", ".join(f"{v:.6g}" for v in where)

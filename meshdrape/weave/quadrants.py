@@ -31,7 +31,7 @@ class _Tile:
 def gap_tolerance(surface: Surface, fabric: Fabric) -> float:
     """Largest gap left between the ends of a node's two edges, mm: the round-off of places on the largest face."""
     round_off = 32 * float(np.finfo(float).eps) * surface.longest_edge
-    return 1e-11 * min(fabric.warp_spacing, fabric.weft_spacing) + round_off
+    return 1e-11 * fabric.shortest + round_off
 
 
 def fill(
@@ -61,7 +61,7 @@ def fill(
     tolerance = gap_tolerance(surface, fabric)
     slack = border_slack(fabric)
     mesh = surface.unfolding
-    table = detours(surface, max(fabric.warp_spacing, fabric.weft_spacing))
+    table = detours(surface, fabric.longest)
 
     def run(tile: _Tile) -> int:
         span_i, span_j = spans[tile.si][0], spans[tile.sj][1]

@@ -149,7 +149,7 @@ def rebuild(mould: Mould, stored: StoredNodes, threads: int = 1) -> Rebuilt:
     edge_gap = np.full((2, n_warp, n_weft), np.nan)
     mesh = surface.unfolding
     kernel: Callable[..., Any] = aim_edges
-    enough = ROUND_OFF * min(fabric.warp_spacing, fabric.weft_spacing) + 1e-15 * float(np.abs(surface.vertices).max())
+    enough = ROUND_OFF * fabric.shortest + 1e-15 * float(np.abs(surface.vertices).max())
     run_kernel(
         kernel,
         [

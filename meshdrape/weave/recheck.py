@@ -137,7 +137,7 @@ def recheck(
     begun = time.perf_counter()
     rebuilt = rebuild(mould, stored, threads)
     net = rebuilt.net
-    spacing = min(net.fabric.warp_spacing, net.fabric.weft_spacing)
+    spacing = net.fabric.shortest
     status = stored.node_status
     on = status == NodeStatus.PLACED
     population = count_edges(on)

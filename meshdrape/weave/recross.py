@@ -76,7 +76,7 @@ def end_where_recrossed(
     i0, j0 = (int(v) for v in start.origin)
     n_warp, n_weft = lattice.status.shape
     tables = (lattice.face, lattice.status, region, creases.returns)
-    beyond = BEYOND * max(fabric.warp_spacing, fabric.weft_spacing)
+    beyond = BEYOND * fabric.longest
 
     def returning(search: tuple[bool, int]) -> IntArray:
         warp, sense = search

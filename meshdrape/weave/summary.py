@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshdrape import __version__
 from meshdrape.kernels import locate
@@ -29,6 +30,8 @@ MISSING = (
 )
 # Mesh noise above this share of the locking angle is worth a warning.
 NOISE_SHARE = 0.1
+# An arc's middle this near to -90 degrees, in half turns, is at 90: round-off must not choose.
+HALF_TURN = 1e-9
 
 
 def fabric_missing(net: Net) -> bool:
@@ -99,6 +102,7 @@ def summarise(
         "audit": asdict(audit),
         "mesh_noise_deg": math.degrees(noise),
         "balance_residual_deg": math.degrees(balance.worst),
+        "balance_open_deg": math.degrees(_doubt(balance)),
         "balance_residual_at": None if balance.worst_position is None else balance.worst_position.tolist(),
         "faces": _by_cad_face(measures, field),
         "notes": [*mould.notes, *net.notes, *_meeting(net)],
@@ -122,18 +126,55 @@ def _start_fibres(net: Net) -> dict[str, dict[str, Any]]:
 
 
 def _angles(field: MouldField, angle: Any) -> dict[str, float] | None:
-    """Least, mean and largest fibre angle from the reference, and the mean deviation from it, by area."""
+    """Least, mean and largest fibre angle from the reference, and the mean deviation from it, by area.
+
+    The least and the largest are the ends of the shortest arc that holds all: where fibres lie across the reference
+    they reach past 90 degrees, or below -90.
+    """
     on = field.covered
     if not on.any():
         return None
-    # a fibre has no sense: the mean is that of the doubled angles
-    doubled = np.average(np.exp(2j * angle[on]), weights=field.area[on])
+    least, largest = shortest_arc(angle[on])
+    # a fibre has no sense: the mean is that of the doubled angles, on the arc's half turn
+    mean = float(np.angle(np.average(np.exp(2j * angle[on]), weights=field.area[on]))) / 2
+    mean += np.pi * round(((least + largest) / 2 - mean) / np.pi)
     return {
-        "min": math.degrees(float(angle[on].min())),
-        "mean": math.degrees(float(np.angle(doubled)) / 2),
-        "max": math.degrees(float(angle[on].max())),
+        "min": math.degrees(least),
+        "mean": math.degrees(mean),
+        "max": math.degrees(largest),
         "mean_deviation": math.degrees(float(np.average(np.abs(angle[on]), weights=field.area[on]))),
     }
+
+
+def shortest_arc(angle: NDArray[np.float64]) -> tuple[float, float]:
+    """Ends of the shortest arc that holds all of some undirected angles, rad; its middle lies in (-pi/2, pi/2].
+
+    Parameters
+    ----------
+    angle : (n,) rad
+        At least one, each known to within half a turn.
+    """
+    around = np.sort(np.mod(angle, np.pi))
+    gap = np.diff(around, append=around[0] + np.pi)
+    widest = int(np.argmax(gap))
+    first = float(around[(widest + 1) % len(around)])
+    length = math.pi - float(gap[widest])
+    turns = math.ceil((first + length / 2 - np.pi / 2) / np.pi - HALF_TURN)
+    return first - np.pi * turns, first + length - np.pi * turns
+
+
+def _doubt(balance: Balance) -> float:
+    """What the balance leaves open at its worst cell, rad.
+
+    Angle defects in the last row and column of its fabric rectangle count by half, on whichever side of the cell's
+    middle they lie: half of them is the most that the shear can differ for it.
+    """
+    if balance.worst_cell is None:
+        return 0.0
+    (i, j), (i0, j0) = balance.worst_cell, balance.measures.net.seed_index
+    rows, columns = slice(min(i, i0), max(i + 1, i0)), slice(min(j, j0), max(j + 1, j0))
+    beside = np.abs(balance.cell_defect[i, columns]).sum() + np.abs(balance.cell_defect[rows, j]).sum()
+    return float(beside) / 2
 
 
 def _first_places(net: Net) -> dict[str, dict[str, Any]]:

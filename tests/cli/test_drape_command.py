@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,8 @@ from meshfiles import binary_stl
 from moulds import cap, grid, icosphere, plate
 
 import meshdrape
+from meshdrape import weave
+from meshdrape.cli import drape as drape_command
 from meshdrape.cli.main import main
 from meshdrape.weave import read_off
 from meshdrape.weave.noise import mesh_noise
@@ -64,6 +68,15 @@ def through_api(dome):
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("suffix", [".json", ".png", ".stl", ""])
+def test_a_net_is_written_as_ply(capfd, flat, tmp_path, suffix):
+    """Under the name of one of its companions it would be lost beneath that one."""
+    outcome = run(capfd, "drape", flat, "-o", tmp_path / f"net{suffix}", "--spacing", 20)
+    assert (outcome.code, outcome.out, outcome.err.count("\n")) == (2, "", 1)
+    assert f"net{suffix} has the suffix {suffix or '(none)'}; a net is written as .ply" in outcome.err
+    assert not list(tmp_path.iterdir())
+
+
 # --- files ------------------------------------------------------------------------------------------------------------
 
 
@@ -105,6 +118,30 @@ def test_summary_agrees_with_the_public_names(whole, dome, through_api):
     assert summary["mould"]["triangles"] == len(mould.triangles)
     assert summary["mould"]["sha256"] == mould.sha256
     assert summary["mould"]["area_mm2"] == pytest.approx(mould.surface.face_area.sum())
+
+
+def test_whatever_compiles_is_told_of(flat, tmp_path, monkeypatch):
+    """Measuring and the audit have kernels of their own: the notice of the first run is not over before them."""
+    inside, seen = [], {}
+
+    @contextmanager
+    def told(quiet):
+        inside.append(quiet)
+        yield
+        inside.pop()
+
+    def watched(module, name):
+        real = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *words, **named: seen.update({name: bool(inside)})
+                            or real(*words, **named))  # fmt: skip
+
+    monkeypatch.setattr(drape_command, "compilation_told", told)
+    for name in ("drape", "measure", "read_off", "audit"):
+        watched(weave, name)
+    watched(sys.modules["meshdrape.weave.balance"], "balance")
+    assert main(["drape", str(flat), "-o", str(tmp_path / "net.ply"), "--spacing", "20", "--no-picture"]) == 0
+    assert seen == dict.fromkeys(("drape", "measure", "read_off", "audit", "balance"), True)
+    assert not inside
 
 
 def test_net_file_holds_the_net_of_the_public_names(whole, through_api):
@@ -358,6 +395,15 @@ def test_fibre_angles_are_told_from_the_reference(capfd, flat, tmp_path, referen
     for name, expected in (("warp_angle_deg", angle), ("weft_angle_deg", angle - 90 if angle > 0 else angle + 90)):
         found = summary[name]
         assert (found["min"], found["mean"], found["max"]) == pytest.approx((expected,) * 3, abs=1e-6)
+
+
+def test_angles_across_the_reference_are_not_cut_at_a_right_angle(capfd, dome, tmp_path):
+    """The same cloth, counted from an axis along it and from one across it: the range turns with the axis."""
+    start = ("--spacing", SPACING, "--seed", "50,30,990", "--direction", "1,0,0")
+    along = draped(capfd, dome, tmp_path / "net.ply", *start, "--reference", "1,0,0")["warp_angle_deg"]
+    weft = draped(capfd, dome, tmp_path / "net.ply", *start, "--reference", "1,0,0")["weft_angle_deg"]
+    assert along["min"] < along["mean"] < along["max"] < along["min"] + 90
+    assert 45 < weft["min"] < weft["mean"] < 90 < weft["max"] < 135 or -135 < weft["min"] < -90 < weft["max"] < -45
 
 
 def test_seed_off_the_mould_is_projected_and_the_distance_told(capfd, flat, tmp_path):

@@ -139,6 +139,8 @@ def test_ctrl_c_ends_every_process(tmp_path, delay):
 
 @pytest.mark.parametrize(("words", "says"), [
     (["--chart", "20"], "no chart"), (["--chart", "1x9"], "no chart"), (["--nearest", "angle"], "invalid choice"),
+    (["--family", "bump"], "--family bump is the family of f that a chart varies: ask for one with --chart"),
+    (["--family", "sine"], "ask for one with --chart"),
     (["-o", "answer.pdf"], "has the suffix .pdf"), (["-o", "none/answer.json"], "does not exist"),
 ])  # fmt: skip
 def test_words_that_make_no_sense(capfd, words, says):

@@ -94,6 +94,26 @@ def test_refine_gives_the_maximum_its_bar(capfd, tmp_path):
     assert f"+- {bar['error_bar_deg']:.2g} deg" in row
 
 
+def test_refine_bends_the_fibres_as_the_drape_does(capfd, tmp_path):
+    start = ("--spacing", "200", "--seed", "2000,7000,1000", "--direction", "0,1,0", "--extent", "2000,2000,2000,2000")
+    summary = draped(
+        capfd, SAMPLES / "wing_spar.step", tmp_path / "net.ply", *start, "--weft-turn-deg", "-8", "--refine"
+    )
+    bar = summary["refinement"]
+    assert bar["max_shear_deg"][2] == summary["max_shear_deg"]
+    assert np.ptp(bar["max_shear_deg"]) < 0.2 < summary["max_shear_deg"]
+    assert bar["error_bar_deg"] < 0.3
+
+
+def test_cloth_that_stops_cannot_be_refined(capfd, tmp_path):
+    words = ("drape", SAMPLES / "hypar.step", "-o", tmp_path / "net.ply", "--spacing", "50", "--refine")
+    outcome = run(capfd, *words, "--stop-at", "7")
+    assert (outcome.code, outcome.out) == (2, "")
+    assert "cloth that stops at 7 degrees of shear" in outcome.err
+    assert outcome.err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_mesh_cannot_be_refined(capfd, tmp_path):
     begun = time.perf_counter()
     outcome = run(capfd, "drape", SAMPLES / "cone.stl", "-o", tmp_path / "net.ply", "--spacing", "1", "--refine")

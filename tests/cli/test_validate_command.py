@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import re
 
+import numpy as np
 import pytest
 from command import run
 
-from meshdrape.study.claims import Verdict, n_steps
+from meshdrape.study.claims import Verdict, judgement, n_steps
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +60,32 @@ def test_pictures_stand_beside_the_page(written):
         content = (page.parent / name).read_bytes()
         assert content.startswith(b"\x89PNG")
         assert 5_000 < len(content) < 300_000
+
+
+def test_a_claim_without_numbers_is_told_loudly(capfd, tmp_path, monkeypatch):
+    """A number that is not found gives no verdict, and no success."""
+    from meshdrape.output import validation
+    from meshdrape.study import claims
+
+    lost = claims.Claim("(99)", "Something.", "nan.", judgement.criterion([1.0], [np.nan], 0.05))
+    held = claims.Claim("(98)", "Something else.", "0.", judgement.equality(0.0, 0.1))
+    for found, code in (((held, lost), 3), ((held,), 0)):
+        recomputed = claims.Recomputed((claims.Section("Part", found),), None, True)
+        monkeypatch.setattr(claims, "recompute", lambda recomputed=recomputed, **_: recomputed)
+        monkeypatch.setattr(validation, "write_validation", lambda recomputed, page, command: [page])
+        outcome = run(capfd, "validate", "-o", tmp_path / "page.md")
+        assert outcome.code == code
+        assert ("WARNING  no verdict for want of numbers: (99)\n" in outcome.out) == bool(code)
+
+
+@pytest.mark.parametrize(("name", "suffix"), [("x.txt", ".txt"), ("page", "(none)"), ("page.html", ".html")])
+def test_the_page_is_markdown(capfd, tmp_path, name, suffix):
+    """Nothing is computed for a page that no reader of Markdown would open, or whose pictures have no folder."""
+    outcome = run(capfd, "validate", "-o", tmp_path / name)
+    assert (outcome.code, outcome.out) == (2, "")
+    said = f"{tmp_path / name} has the suffix {suffix}; the page is written as .md .markdown\n"
+    assert outcome.err == f"meshdrape: {said}"
+    assert not list(tmp_path.iterdir())
 
 
 def test_refused_before_anything_is_computed(capfd, tmp_path):

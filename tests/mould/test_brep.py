@@ -128,6 +128,11 @@ def test_a_choice_that_is_not_there(faces, words):
     assert len(caught.value.faces) == 6
 
 
+def test_the_only_face_is_named_as_one():
+    with pytest.raises(SelectionError, match=r"has no face 2: its only face is 1; meshdrape inspect part\.step"):
+        chosen(solid("box").Faces()[0], "2")
+
+
 @pytest.mark.parametrize(
     "tolerances",
     [

@@ -15,7 +15,7 @@ from meshdrape.output.validation.fold_figures import draw_flat_spar, draw_flatte
 from meshdrape.output.validation.page import write_validation
 from meshdrape.study.claims import Claim, Recomputed, Section, Verdict
 from meshdrape.study.claims.drapes import drape_fold
-from meshdrape.study.claims.judgement import Judgement
+from meshdrape.study.claims.judgement import Judgement, equality
 from meshdrape.study.claims.views import ConvergenceView, CriteriaView, TurnView, WeaveView, sheet_view
 from meshdrape.theory import Fold, quadratic
 
@@ -61,6 +61,16 @@ def test_tables(written):
     assert "| unsafe | 1 |" in text
     assert [file.name for file in files] == ["page.md", "one.png"]
     assert "![A title](page/one.png)" in text
+
+
+def test_a_claim_without_a_verdict_is_on_the_page(tmp_path, monkeypatch):
+    monkeypatch.setattr(page_module, "_pictures", lambda views: iter(()))
+    claim = Claim("(3)", "c", "Found nan.", equality([np.nan], 1.0, "deg"), ((Verdict.HOLDS, "All is well."),))
+    write_validation(Recomputed((Section("Part", (claim,)),), None, False), tmp_path / "page.md", "meshdrape validate")
+    text = (tmp_path / "page.md").read_text()
+    assert "| Found nan. | none found | **not found: a number is missing**<br>" in text
+    assert "| not found: a number is missing | 1 |" in text
+    assert "All is well" not in text
 
 
 def test_folder_that_is_not_there(tmp_path):

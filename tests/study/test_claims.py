@@ -16,6 +16,7 @@ from meshdrape.study.claims import (
     sections_2_3,
 )
 from meshdrape.study.claims import judgement as rule
+from meshdrape.study.claims.claim import angle
 from meshdrape.study.claims.drapes import drape_fold
 from meshdrape.theory import RIBBON_FED, WING_FED, Fold, quadratic, within_reach
 from meshdrape.theory import fold as fold_module
@@ -67,12 +68,53 @@ def test_rules_turn_on_their_thresholds():
         assert judged.verdict is verdict, judged
 
 
-@pytest.mark.parametrize("nothing", [[], [np.nan], [0.0, np.nan]])
-def test_nothing_holds_for_want_of_numbers(nothing):
-    assert rule.equality(nothing, 1.0).verdict is Verdict.WRONG
-    assert rule.printed(nothing, nothing, 1.0).verdict is Verdict.WRONG
-    assert rule.conditional(nothing, nothing, 1.0).verdict is Verdict.WRONG
-    assert rule.first_order([np.nan, *([1.0] if nothing else [np.nan])], 1.0).verdict is Verdict.WRONG
+# What each rule judges true, as many numbers as it takes.
+TRUE = {
+    rule.equality: ([0.0, 0.0], 1.0),
+    rule.printed: ([0.0, 0.0], [0.0, 0.0], 1.0),
+    rule.signed: ([0.0, 0.0], [0.0, 0.0], 1.0),
+    rule.first_order: ([4e-12, 1e-12], 1.9),
+    rule.criterion: ([1.0, 1.0], [1.0, 1.0], 0.05),
+    rule.optimum: ([1.0, 1.0], [1.0, 1.0], 0.05),
+    rule.bound: ([1.0, 1.0], [1.0, 1.0], 0.05),
+    rule.condition: (0, 0, 9),
+    rule.named_region: (0.0, 0.0, 0.1),
+    rule.conditional: ([0.0, 0.0], [0.0, 0.0], 0.1),
+    rule.occurs: (1.0, 0.5),
+    rule.counterexample: ([1.0, 1.0], 0.1),
+}
+
+
+@pytest.mark.parametrize("judge", TRUE, ids=lambda judge: judge.__name__)
+def test_nothing_is_judged_for_want_of_numbers(judge):
+    """Whichever of its numbers a rule is not given: NaN, infinite, or none at all, it gives no verdict of the claim."""
+    given = TRUE[judge]
+    assert judge(*given).verdict is Verdict.HOLDS
+    for which, value in enumerate(given):
+        several = isinstance(value, list)
+        missing = [np.nan, np.inf, *([[]] if several else [])]
+        missing += [[*value[:at], bad, *value[at + 1 :]] for bad in (np.nan, np.inf) for at in range(2) if several]
+        for nothing in missing:
+            judged = judge(*given[:which], nothing, *given[which + 1 :])
+            assert judged.verdict is Verdict.NOT_FOUND, (which, nothing)
+            assert np.isnan(judged.error)
+
+
+def test_every_rule_is_asked():
+    rules = {
+        value for value in vars(rule).values() if getattr(value, "__annotations__", {}).get("return") == "Judgement"
+    }
+    assert rules == set(TRUE)
+
+
+def test_every_exception_must_be_found_to_contradict():
+    assert rule.counterexample([0.0, 1.0], 0.1).verdict is Verdict.HOLDS
+    assert rule.counterexample([0.0, -0.05], 0.1).verdict is Verdict.WRONG
+
+
+def test_a_claim_can_say_that_a_number_is_missing():
+    assert angle(np.nan) == "nan°"
+    assert angle(np.inf) == "inf°"
 
 
 def test_errors_are_in_degrees():

@@ -9,7 +9,8 @@ from creased import read
 from references import Crease, CreaseNet, hypar_net, sphere_angle, sphere_net
 
 import meshdrape
-from meshdrape.errors import MouldError
+from meshdrape.errors import MouldError, StartError
+from meshdrape.study import convergence
 from meshdrape.study.convergence import extrapolated
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -111,6 +112,64 @@ def test_the_other_side_of_chosen_faces():
     assert found.angle_tolerance == pytest.approx(np.radians([0.8, 0.4, 0.2]))
     assert found.chord_tolerance == pytest.approx((0.4, 0.2, 0.1))
     assert np.ptp(found.max_shear) < np.radians(1)
+
+
+@pytest.mark.parametrize("family", ["warp", "weft"])
+@pytest.mark.parametrize("known", [True, False])
+def test_turned_start_fibres(family, known):
+    """A bent fibre is bent on every tessellation: the maxima are those of drapes asked for one by one."""
+    mould, fabric, seed = sample("wing_spar"), meshdrape.Fabric(200.0), (2000.0, 7000.0, 1000.0)
+    # the one that runs over the edge
+    direction = (0.0, 1.0, 0.0) if family == "weft" else (1.0, 0.0, 0.0)
+    asked = {f"{family}_turn": math.radians(-8.0), "extent": (2000.0,) * 4}
+    net = meshdrape.drape(mould, fabric, seed, direction, **asked)
+    found = meshdrape.refine(mould, fabric, net=net) if known else meshdrape.refine(
+        mould, fabric, seed, direction, **asked)  # fmt: skip
+    for power, maximum in ((4, found.max_shear[0]), (2, found.max_shear[1]), (1, found.max_shear[2])):
+        same = sample(
+            "wing_spar",
+            angle_tolerance=power * mould.angle_tolerance,
+            chord_tolerance=power * mould.chord_tolerance,
+        )
+        at = same.surface.closest_point(net.seed)[0].position(same.surface)
+        alone = meshdrape.measure(meshdrape.drape(same, fabric, at, net.direction, **asked)).max_shear
+        assert maximum == pytest.approx(alone, abs=1e-12)
+    straight = meshdrape.measure(meshdrape.drape(mould, fabric, seed, direction, extent=asked["extent"])).max_shear
+    assert abs(straight - found.max_shear[-1]) > math.radians(1.0) > 5 * found.error_bar
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_all_that_was_asked_is_asked_again(monkeypatch, known):
+    """Two drawn fibres, cloth of a given length, fibres that come back, the other engine: of all four drapes."""
+    asked = {
+        "extent": (100.0, 50.0, 50.0, 0.0),
+        "warp_path": ((-300.0, 0.0, 0.0), (0.0, 10.0, 0.0), (300.0, 0.0, 0.0)),
+        "weft_path": ((0.0, -300.0, 0.0), (5.0, 0.0, 0.0), (0.0, 300.0, 0.0)),
+        "recrossing": True,
+        "engine": "libigl",
+    }
+    mould, fabric = sample("hypar"), meshdrape.Fabric(50.0)
+    # drawn on the mould, wherever it lies
+    for name in ("warp_path", "weft_path"):
+        asked[name] = [mould.surface.closest_point(np.array(p))[0].position(mould.surface) for p in asked[name]]
+    net = meshdrape.drape(mould, fabric, **asked) if known else None
+    nets = []
+    monkeypatch.setattr(convergence, "drape", lambda *words, **named: nets.append(meshdrape.drape(*words, **named))
+                        or nets[-1])  # fmt: skip
+    meshdrape.refine(mould, fabric, **({"net": net} if known else asked))
+    assert len(nets) == (3 if known else 4)
+    for one in nets:
+        assert (one.request.extent, one.request.recrossing, one.request.engine) == (asked["extent"], True, "libigl")
+        for name, path in zip(("warp_path", "weft_path"), one.start_fibres.paths, strict=True):
+            np.testing.assert_array_equal(path, asked[name])
+    assert sorted(one.fabric.spacing for one in nets) == [50.0] * (len(nets) - 1) + [100.0]
+
+
+def test_cloth_that_stops_has_its_largest_shear():
+    mould, fabric = sample("hypar"), meshdrape.Fabric(50.0)
+    net = meshdrape.drape(mould, fabric, (0, 0, 0), (1, 0, 0), extent=(200,) * 4, stop_at=0.1)
+    with pytest.raises(StartError, match="refine it without a shear to stop at"):
+        meshdrape.refine(mould, fabric, net=net)
 
 
 # --- the arithmetic ---------------------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ def compare(net, other, place=lambda p: p, index=lambda i, j: (i, j), tolerance=
     off = np.linalg.norm(nodes_at(other, oi, oj) - place(net.node_position), axis=-1)
     there = np.isfinite(off)
     assert np.array_equal(there, net.node_status <= 1)
-    assert off[there].max() < tolerance * scale * min(net.fabric.warp_spacing, net.fabric.weft_spacing)
+    assert off[there].max() < tolerance * scale * net.fabric.shortest
 
 
 def compare_shear(net, other, sign=1, index=lambda i, j: (i, j)):

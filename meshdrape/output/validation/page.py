@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from collections import Counter
@@ -117,8 +118,10 @@ def _row(claim: Claim) -> str:
 
 
 def _error(claim: Claim) -> str:
-    """The error to two digits, with its unit; 0 for what is round-off of nothing."""
+    """The error to two digits, with its unit; 0 for what is round-off of nothing, no number for what was not found."""
     error, unit = claim.judgement.error, {"deg": "°"}.get(claim.judgement.unit, claim.judgement.unit)
+    if not math.isfinite(error):
+        return "none found"
     if error == 0:
         return "0"
     if 1e-3 <= abs(error) < 1e4:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees
+from math import degrees, isfinite
 
 from meshdrape.study.claims.judgement import Judgement, Verdict
 
@@ -65,6 +65,8 @@ def number(value: float, digits: int = 2) -> str:
     """A number with so many decimals; in powers of ten where these would show none of it."""
     if abs(value) < 1e-300:
         value = 0.0  # without a sign
+    if not isfinite(value):
+        return f"{value}"
     if value == 0 or abs(value) >= 0.5 * 10.0**-digits:
         return f"{value:.{digits}f}"
     mantissa, exponent = f"{value:.0e}".split("e")

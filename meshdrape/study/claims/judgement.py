@@ -1,13 +1,16 @@
 """How a verdict follows from numbers: one rule a kind of claim, each with its threshold in words.
 
 No verdict is written down anywhere else; a claim hands its measured numbers to one of these rules. They may be arrays
-of any shape, of which the worst entry counts.
+of any shape, of which the worst entry counts. Where one of them is missing, or not finite, no rule judges: NOT_FOUND.
 """
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +33,7 @@ class Verdict(Enum):
     NOT_BEST = "not the best"
     UNSAFE_AND_STRICT = "unsafe here, too strict there"
     WRONG = "does not hold"
+    NOT_FOUND = "not found: a number is missing"
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,8 @@ class Judgement:
     ----------
     verdict : Verdict
     error : float
-        Of the claim as the report states it; of something that is said to occur, how much of it there is.
+        Of the claim as the report states it; of something that is said to occur, how much of it there is. NaN where
+        nothing was found.
     unit : str
         Of the error: "deg", "" for a ratio or a count.
     threshold : str
@@ -53,10 +58,29 @@ class Judgement:
     threshold: str
 
 
+_Given = ParamSpec("_Given")
+
+
+def _needs_numbers(judge: Callable[_Given, Judgement]) -> Callable[_Given, Judgement]:
+    """A rule that gives NOT_FOUND where anything it is given is empty or not finite.
+
+    No comparison with NaN is true: whatever a rule inferred from that would be a verdict for want of numbers.
+    """
+
+    @functools.wraps(judge)
+    def judged(*given: _Given.args, **named: _Given.kwargs) -> Judgement:
+        numbers = [np.asarray(value, float) for value in (*given, *named.values()) if not isinstance(value, str)]
+        if all(array.size and np.isfinite(array).all() for array in numbers):
+            return judge(*given, **named)
+        unit = next((value for value in (*given, *named.values()) if isinstance(value, str)), "")
+        return Judgement(Verdict.NOT_FOUND, float("nan"), unit, "a finite number wherever one was to be measured")
+
+    return judged
+
+
 def _largest(values: ArrayLike) -> float:
-    """The largest modulus; infinite where a value is missing, so that nothing holds for want of numbers."""
-    array = np.abs(np.asarray(values, dtype=np.float64))
-    return float(array.max()) if array.size and np.isfinite(array).all() else float("inf")
+    """The largest modulus."""
+    return float(np.abs(np.asarray(values, dtype=np.float64)).max())
 
 
 def _within(limit: float, unit: str) -> str:
@@ -64,12 +88,14 @@ def _within(limit: float, unit: str) -> str:
     return f"error at most {limit:.3g} {unit}".rstrip() if limit > 0 else "no error at all"
 
 
+@_needs_numbers
 def equality(error: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """Two numbers that should be the same: HOLDS within a limit, else WRONG."""
     worst = _largest(error)
     return Judgement(Verdict.HOLDS if worst <= limit else Verdict.WRONG, worst, unit, _within(limit, unit))
 
 
+@_needs_numbers
 def printed(as_printed: ArrayLike, corrected: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """A formula and its obvious correction: HOLDS as printed, MISPRINT where only the correction is right, or WRONG."""
     first, second = _largest(as_printed), _largest(corrected)
@@ -77,6 +103,7 @@ def printed(as_printed: ArrayLike, corrected: ArrayLike, limit: float, unit: str
     return Judgement(verdict, first, unit, _within(limit, unit) + ", as printed or corrected")
 
 
+@_needs_numbers
 def signed(with_sign: ArrayLike, modulus: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """A signed formula: HOLDS with its sign, SIGN where only its modulus is right, or WRONG."""
     first, second = _largest(with_sign), _largest(modulus)
@@ -90,6 +117,7 @@ def order_of(errors: ArrayLike) -> float:
     return float(np.log2(array[-2] / array[-1])) if array[-1] > 0 else float("inf")
 
 
+@_needs_numbers
 def first_order(errors: ArrayLike, least: float, unit: str = "", exact: float = 1e-9) -> Judgement:
     """An expansion whose small parameter was halved from one error to the next.
 
@@ -100,11 +128,11 @@ def first_order(errors: ArrayLike, least: float, unit: str = "", exact: float = 
     if worst <= exact:
         verdict = Verdict.HOLDS
     else:
-        fast = np.isfinite(worst) and order_of(array) >= least
-        verdict = Verdict.FIRST_ORDER if fast else Verdict.WRONG
+        verdict = Verdict.FIRST_ORDER if order_of(array) >= least else Verdict.WRONG
     return Judgement(verdict, float(array[-1]), unit, f"error falls with a power of {least:g} or more")
 
 
+@_needs_numbers
 def criterion(estimate: ArrayLike, true: ArrayLike, slack: float) -> Judgement:
     """A largest shear as a criterion foretells it against the one found, of several designs, rad.
 
@@ -123,6 +151,7 @@ def criterion(estimate: ArrayLike, true: ArrayLike, slack: float) -> Judgement:
     return Judgement(verdict, float(np.degrees(worst)), "deg", f"within {100 * slack:g} % of the shear found")
 
 
+@_needs_numbers
 def optimum(value: ArrayLike, best: ArrayLike, slack: float) -> Judgement:
     """A choice said to make a shear least, of several designs, rad: HOLDS, or NOT_BEST where another leaves less.
 
@@ -134,6 +163,7 @@ def optimum(value: ArrayLike, best: ArrayLike, slack: float) -> Judgement:
     return Judgement(verdict, float(np.degrees(more)), "deg", f"no other leaves {most:.3g} deg less")
 
 
+@_needs_numbers
 def bound(estimate: ArrayLike, true: ArrayLike, slack: float) -> Judgement:
     """A maximum that is claimed to be attained, rad: HOLDS, UPPER_BOUND where it is never exceeded, else UNSAFE."""
     judged = criterion(estimate, true, slack)
@@ -143,6 +173,7 @@ def bound(estimate: ArrayLike, true: ArrayLike, slack: float) -> Judgement:
     return Judgement(verdict, judged.error, judged.unit, judged.threshold)
 
 
+@_needs_numbers
 def condition(passed_but_fails: int, refused_but_works: int, designs: int) -> Judgement:
     """A yes-or-no condition over a number of designs: HOLDS, SUFFICIENT, NECESSARY or WRONG."""
     if passed_but_fails:
@@ -154,6 +185,7 @@ def condition(passed_but_fails: int, refused_but_works: int, designs: int) -> Ju
     )
 
 
+@_needs_numbers
 def named_region(error_there: float, error_elsewhere: float, limit: float) -> Judgement:
     """A statement about one region that may be true of the other, rad: HOLDS, SWAPPED or WRONG."""
     verdict = Verdict.HOLDS if error_there <= limit else Verdict.SWAPPED if error_elsewhere <= limit else Verdict.WRONG
@@ -161,6 +193,7 @@ def named_region(error_there: float, error_elsewhere: float, limit: float) -> Ju
     return Judgement(verdict, error, "deg", f"error at most {most:.2g} deg, in the region named or in the other")
 
 
+@_needs_numbers
 def conditional(error_under_it: ArrayLike, error_without: ArrayLike, limit: float, unit: str = "") -> Judgement:
     """A general statement that may need a condition: HOLDS without it, CONDITIONAL where it holds under it, or WRONG.
 
@@ -173,6 +206,7 @@ def conditional(error_under_it: ArrayLike, error_without: ArrayLike, limit: floa
     return Judgement(verdict, without, unit, _within(limit, unit) + ", with or without it")
 
 
+@_needs_numbers
 def occurs(measure: float, least: float, unit: str = "") -> Judgement:
     """Something that is said to occur: HOLDS where at least so much of it was measured, else WRONG."""
     return Judgement(
@@ -180,9 +214,9 @@ def occurs(measure: float, least: float, unit: str = "") -> Judgement:
     )
 
 
-def counterexample(exception: float, limit: float, unit: str = "") -> Judgement:
-    """A claim that there is no other: WRONG if what it excludes was found, to within a limit of 0, else HOLDS."""
-    exists = abs(exception) <= limit
-    return Judgement(
-        Verdict.WRONG if exists else Verdict.HOLDS, abs(exception), unit, f"not contradicted within {limit:.3g} {unit}"
-    )
+@_needs_numbers
+def counterexample(exception: ArrayLike, limit: float, unit: str = "") -> Judgement:
+    """A claim that there is no other: WRONG if all that it excludes was found, to within a limit of 0, else HOLDS."""
+    worst = _largest(exception)
+    verdict = Verdict.WRONG if worst <= limit else Verdict.HOLDS
+    return Judgement(verdict, worst, unit, f"not contradicted within {limit:.3g} {unit}".rstrip())

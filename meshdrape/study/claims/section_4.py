@@ -250,7 +250,7 @@ def _slope_criterion(runs: Runs, place: str, *, upright: bool) -> Claim:
         gamma = 0.0 if upright else within_reach(fold, height).gamma_best
         draped = runs.draped_real(k, gamma)
         estimate.append(slope_criterion(family.make(family.amplitudes[0])).value)
-        true.append(max(draped.max_shear(WING_FED), draped.max_shear(RIBBON_FED)))
+        true.append(float(np.max([draped.max_shear(WING_FED), draped.max_shear(RIBBON_FED)])))
         words.append(f"{family.name} {angle(estimate[-1])} against {angle(true[-1])}")
     laid = "left ribbon upright" if upright else "left ribbon at its best"
     found = f"Real wing draped at {1000 * runs.spacing:.0f} mm, spar 1 m, {laid}: " + "; ".join(words) + "."
@@ -267,7 +267,7 @@ def _slope_criterion(runs: Runs, place: str, *, upright: bool) -> Claim:
 def shear_of_the_wing(runs: Runs) -> Claim:
     """The end of section 4: extra shear on the wing cover."""
     drapes = [runs.draped_real(k) for k, _ in runs.families]
-    on_wing = max(float(np.abs(one.on_wing).max()) for one in drapes)
+    on_wing = float(np.max([np.abs(one.on_wing).max() for one in drapes]))
     astride = max(float(np.abs(one.astride).max()) for one in drapes)
     most = max(max(one.max_shear(k) for k in (RIBBON_FED, WING_FED)) for one in drapes)
     count = sum(len(one.on_wing) for one in drapes)

@@ -191,7 +191,7 @@ def sharper_maximum(runs: Runs) -> Claim:
         "Shear is the difference of the rotations of a cell's ribbons: its maximum over the "
         "rows and columns that meet.",
         found,
-        equality(np.degrees(off), float(np.degrees(max(finest))), "deg"),
+        equality(np.degrees(off), float(np.degrees(np.max(finest))), "deg"),
     )
 
 

@@ -69,7 +69,7 @@ def origami_fold(runs: Runs) -> Claim:
     draped = runs.draped_origami()
     y = np.linspace(0, runs.origami.span, 101)
     plane = np.abs(runs.origami.spar(y) - runs.origami.wing(y)).max()
-    worst = max(alone, float(np.degrees(draped.measures.max_shear)))
+    worst = float(np.max([alone, np.degrees(draped.measures.max_shear)]))
     found = (
         f"Crease off the plane x = z by {number(plane, 0)} m. Largest shear {angle(alone)} on g = 0.3 y² without a "
         f"mesh, {angle(draped.measures.max_shear)} in {draped.measures.n_cells:,} cells draped on the real wing."
