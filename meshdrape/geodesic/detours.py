@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.kernels.certify import TURNED_OVER
 from meshdrape.kernels.crowd import reach_of_crowds
 from meshdrape.kernels.flood import flood
 from meshdrape.kernels.tables import KEPT_OUT, Detours
@@ -22,6 +23,8 @@ MARGIN, CROWD_MARGIN = 1.5, 2.0
 # Curvature spread no denser than this over the square of a path's length offers no shorter way: on a sphere that
 # takes pi^2.
 SPREAD = 1.0
+# Normals compared each with each, at most.
+MOST_NORMALS = 3000
 # Crowds whose centres lie within this part of their reach of one another are taken as one.
 ALIKE = 0.25
 
@@ -59,7 +62,16 @@ def _detours(surface: Surface, length: float) -> Detours:
     corner = np.where(keep_out > 0, KEPT_OUT + keep_out, np.clip(np.tan(half), -0.5 * KEPT_OUT, 0.5 * KEPT_OUT))
     faces = surface.faces
     wary = ((surface.corner_angle > np.pi - half[faces]) | (keep_out[faces] > 0)).any(axis=1)
+    if not corner.any() and _faces_one_way(surface.face_normal):
+        corner = np.empty((0, 3))
+        return Detours(corner, np.asarray(wary), corner)
     return Detours(corner[faces], np.asarray(wary), surface.face_normal)
+
+
+def _faces_one_way(normal: FloatArray) -> bool:
+    """Whether no two normals (m, 3) are so far apart that a path could turn over; False where there are too many."""
+    one_way = np.unique(normal.round(9), axis=0)
+    return len(one_way) <= MOST_NORMALS and bool((one_way @ one_way.T).min() > TURNED_OVER + 1e-6)
 
 
 def _crowds(vertices: FloatArray, defect: FloatArray, asked: IntArray, length: float) -> tuple[FloatArray, FloatArray]:

@@ -4,11 +4,13 @@ import math
 
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.tables import KEPT_OUT
-from meshdrape.kernels.walk import MAX_CROSSINGS
+from meshdrape.kernels.walk import MAX_CROSSINGS, corner_at, first_exit, next_exit
 
 # A path over which the surface turns by more than about 100 degrees may lie on a tube, with another way round the back.
 # One sharp crease turns it by 90.
 TURNED_OVER = -0.17
+# Vertices that give less than this part of the turn are not counted.
+LEAST_DOUBT = 0.01
 
 
 @kernel(inline="always")
@@ -18,43 +20,30 @@ def turned_over(normal, f, g):
 
 
 @kernel
-def _doubt(plane, detour, face, k, x, y, dx, dy, tx, ty):
-    """How near corner k of a face comes to offering a shorter way from (x, y) to (tx, ty), ahead along (dx, dy).
+def _doubt(d, ax, ay, bx, by, dx, dy):
+    """How near a corner comes to offering a shorter way to a path that it sees go from (ax, ay) to (bx, by).
 
-    The part of its turn that it would have to give, positive if it lies on the left, negative on the right; infinite
-    if it may offer one by itself.
+    `d` is its entry in `Detours.corner`, (dx, dy) the path's direction. The part of its turn that it would have to
+    give, positive if it lies on the left, negative on the right; infinite if it may offer one by itself.
     """
-    d = detour[face, k]
-    if d == 0.0:
-        return 0.0
-    cx = 0.0
-    cy = 0.0
-    if k == 1:
-        cx = plane[face, 21]
-    elif k == 2:
-        cx = plane[face, 22]
-        cy = plane[face, 23]
-    ax = x - cx
-    ay = y - cy
-    bx = tx - cx
-    by = ty - cy
-    if d >= KEPT_OUT:
-        # whether the path comes within a radius
-        before = ax * dx + ay * dy
-        beyond = bx * dx + by * dy
-        if before > 0.0:
-            away2 = ax * ax + ay * ay
-        elif beyond < 0.0:
-            away2 = bx * bx + by * by
-        else:
-            away2 = (ax * dy - ay * dx) ** 2
-        return math.inf if away2 < (d - KEPT_OUT) ** 2 else 0.0
     # the angle at the vertex between both ends, on the path's side, against pi less what d is the tangent of
     dot = ax * bx + ay * by
     cross = ax * by - ay * bx
-    if d > 0.0:
-        return -d * dot / cross if dot < 0.0 else 0.0
-    return math.inf if dot < 0.0 or abs(cross) > -d * dot else 0.0
+    if 0.0 < d < KEPT_OUT:
+        turn = -d * dot
+        return turn / cross if turn > LEAST_DOUBT * abs(cross) else 0.0
+    if d < 0.0:
+        return math.inf if dot < 0.0 or abs(cross) > -d * dot else 0.0
+    # whether the path comes within a radius
+    before = ax * dx + ay * dy
+    beyond = bx * dx + by * dy
+    if before > 0.0:
+        away2 = ax * ax + ay * ay
+    elif beyond < 0.0:
+        away2 = bx * bx + by * by
+    else:
+        away2 = (ax * dy - ay * dx) ** 2
+    return math.inf if away2 < (d - KEPT_OUT) ** 2 else 0.0
 
 
 @kernel
@@ -74,48 +63,28 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
     plane, neighbour
         Of `Unfolding`, as `walk` has them.
     detour, normal : (m, 3)
-        Of `Detours`.
+        Of `Detours`; (0, 3) where no path on the surface has a second route.
     """
+    if len(detour) == 0:
+        return False
     tx = x + length * dx
     ty = y + length * dy
     left = 0.0
     right = 0.0
     for k in range(3):
-        doubt = _doubt(plane, detour, face, k, x, y, dx, dy, tx, ty)
-        left += max(doubt, 0.0)
-        right -= min(doubt, 0.0)
+        if detour[face, k] != 0.0:
+            cx, cy = corner_at(plane, face, k)
+            doubt = _doubt(detour[face, k], x - cx, y - cy, tx - cx, ty - cy, dx, dy)
+            if doubt > 0.0:
+                left += doubt
+            else:
+                right -= doubt
     tail = face
-    entered = -1
+    exit_edge = first_exit(plane, face, x, y, dx, dy, length)
     for _ in range(MAX_CROSSINGS):
-        # over the edge that the end lies beyond and that the line itself crosses
-        exit_edge = -1
-        ended = True
-        for k in range(3):
-            if k == entered:
-                continue
-            if plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty - plane[face, 3 * k + 2] >= 0.0:
-                continue
-            ended = False
-            ux = 0.0
-            uy = 0.0
-            vx = plane[face, 21]
-            vy = 0.0
-            if k == 1:
-                ux = plane[face, 21]
-                vx = plane[face, 22]
-                vy = plane[face, 23]
-            elif k == 2:
-                ux = plane[face, 22]
-                uy = plane[face, 23]
-                vx = 0.0
-            # the edge's tail lies to the right of the line, its head to the left
-            if dx * (uy - y) - dy * (ux - x) <= 0.0 and dx * (vy - y) - dy * (vx - x) >= 0.0:
-                exit_edge = k
-                break
         code = neighbour[face, exit_edge] if exit_edge >= 0 else -1
         if code < 0:
-            # lost at a corner it runs through, it may have missed what lies beyond
-            return left > 1.0 or right > 1.0 or not (ended or exit_edge >= 0)
+            break
         at = 9 + 4 * exit_edge
         c = plane[face, at]
         s = plane[face, at + 1]
@@ -125,9 +94,15 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
         face = code // 3
         entered = code - 3 * face
         # the one corner that is new
-        doubt = _doubt(plane, detour, face, (entered + 2) % 3, x, y, dx, dy, tx, ty)
-        left += max(doubt, 0.0)
-        right -= min(doubt, 0.0)
+        k = entered + 2 if entered == 0 else entered - 1
+        if detour[face, k] != 0.0:
+            cx, cy = corner_at(plane, face, k)
+            doubt = _doubt(detour[face, k], x - cx, y - cy, tx - cx, ty - cy, dx, dy)
+            if doubt > 0.0:
+                left += doubt
+            else:
+                right -= doubt
         if turned_over(normal, tail, face):
             return True
+        exit_edge = next_exit(plane, face, entered, x, y, dx, dy, length)
     return left > 1.0 or right > 1.0
