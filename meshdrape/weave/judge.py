@@ -10,6 +10,7 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.geodesic.field import Place
 from meshdrape.kernels.edges import WARP, WEFT, edge_ends, edge_key, keep_edge
 from meshdrape.kernels.shear import past_stop
 from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, UNSURE
@@ -19,7 +20,7 @@ from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
 from meshdrape.weave.scan import scan
-from meshdrape.weave.settle import Edge, NodeSearch, Place, Settled, shortest
+from meshdrape.weave.settle import Edge, NodeSearch, Settled, shortest
 from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
@@ -102,7 +103,7 @@ class Judge:
         node = self._place((i, j))
         lengths = (self._fabric.warp_spacing, self._fabric.weft_spacing)
         if all(
-            shortest(self._surface, end, node, size) for end, size in zip((search.a, search.b), lengths, strict=True)
+            shortest(self._surface, end, node, size) for end, size in zip(search.parents, lengths, strict=True)
         ):
             self._keep_cell(i, j, sense)
             return
