@@ -99,15 +99,14 @@ class Judge:
 
     def _judge(self, i: int, j: int, sense: Sense) -> None:
         """Keep a node if there is no shorter way from either parent; else find the one that has none."""
-        search = self._search(i, j, sense, JUDGED)
         node = self._place((i, j))
-        lengths = (self._fabric.warp_spacing, self._fabric.weft_spacing)
-        if all(
-            shortest(self._surface, end, node, size) for end, size in zip(search.parents, lengths, strict=True)
+        warp_parent, weft_parent = self._place((i - sense[0], j)), self._place((i, j - sense[1]))
+        if shortest(self._surface, warp_parent, node, self._fabric.warp_spacing) and shortest(
+            self._surface, weft_parent, node, self._fabric.weft_spacing
         ):
             self._keep_cell(i, j, sense)
             return
-        found = search.run(node, float(sense[0] * sense[1]))
+        found = self._search(i, j, sense, JUDGED).run(node, float(sense[0] * sense[1]))
         if found is None:
             self._settle(i, j, sense)
         else:
