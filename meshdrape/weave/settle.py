@@ -110,7 +110,7 @@ class NodeSearch:
 
         None where there is no such point, the search does not close, or libigl knows of a shorter way.
         """
-        found = self._meet(guess)
+        found = self._meet(guess) or self._meet_over_ridges(guess)
         if found is None:
             return None
         place, ways = found
@@ -143,6 +143,36 @@ class NodeSearch:
                 break
             place, ways = nearer
         return (place, ways) if np.abs(self._miss(ways)).max() <= MET else None
+
+    def _meet_over_ridges(self, guess: Place) -> tuple[Place, list[Way]] | None:
+        """Broyden's method: where two ways are equally long the slopes jump, and Newton's goes to and fro for ever.
+
+        In the plane of the guess's face, unfolded along straight paths.
+        """
+        ways = self._ways(guess)
+        if ways is None:
+            return None
+        shift, miss = np.zeros(2), self._miss(ways)
+        inverse = _inverse(np.stack([way.arrive for way in ways]) / self.length[:, None])
+        longest = 0.3 * float(self.length.min())
+        place: Place | None = guess
+        for _ in range(MAX_TRIALS):
+            move = -inverse @ miss
+            move *= min(1.0, longest / float(np.linalg.norm(move) or 1.0))
+            place = step_from(self.surface, guess, shift + move)
+            ways = None if place is None else self._ways(place)
+            if place is None or ways is None:
+                return None
+            change = self._miss(ways) - miss
+            shift, miss = shift + move, miss + change
+            if np.abs(miss).max() <= MET:
+                return place, ways
+            # good Broyden: the inverse that maps this change to this move, nearest to the last
+            mapped = inverse @ change
+            scale = float(move @ mapped)
+            if abs(scale) > 1e-3 * float(move @ move):
+                inverse = inverse + np.outer(move - mapped, move @ inverse) / scale
+        return None
 
     def _nearer(self, place: Place, move: FloatArray, miss: float) -> tuple[Place, list[Way]] | None:
         """The place after a move, or half of it, and so on, that misses by less; None where none does."""
