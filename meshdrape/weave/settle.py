@@ -110,10 +110,15 @@ class NodeSearch:
 
         None where there is no such point, the search does not close, or libigl knows of a shorter way.
         """
-        found = self._meet(guess) or self._meet_over_ridges(guess)
-        if found is None:
-            return None
-        place, ways = found
+        for method in (self._meet, self._meet_over_ridges):
+            found = method(guess)
+            settled = None if found is None else self._settled(*found, side)
+            if settled is not None:
+                return settled
+        return None
+
+    def _settled(self, place: Place, ways: list[Way], side: float) -> Settled | None:
+        """The node at a place, if it is on the right side, and libigl knows of no other distance."""
         warp_edge, weft_edge = (self._edge(k, place, way) for k, way in enumerate(ways))
         p, q = warp_edge.arrive, weft_edge.arrive
         # sine of the angle from A's edge to B's: folded, as for straight paths, within a degree of parallel
