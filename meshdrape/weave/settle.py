@@ -88,22 +88,16 @@ class NodeSearch:
         self.surface = surface
         self.parents = (a, b)
         self.length = np.array([warp, weft])
-        ends = [SurfacePoint.from_frame(surface, *place) for place in self.parents]
         node = SurfacePoint.from_frame(surface, *guess)
-        ways = []
-        if slack is not None:
-            ways = [
-                faces_between(surface, end, node, (1 + slack) * size)
-                for end, size in zip(ends, self.length.tolist(), strict=True)
-            ]
-        if not all(len(way) for way in ways) or not ways:
-            # whatever lies within one spacing of either, and a margin for trial points beyond the node
-            ways = [faces_between(surface, end, end, 1.2 * (warp + weft)) for end in ends]
-        region = Region(surface, np.union1d(*ways))
-        self.fields = [
-            DistanceField(region, place, FARTHEST * size)
-            for place, size in zip(self.parents, self.length.tolist(), strict=True)
-        ]
+        self.fields = []
+        for place, size in zip(self.parents, self.length.tolist(), strict=True):
+            end = SurfacePoint.from_frame(surface, *place)
+            faces = (
+                np.empty(0, dtype=np.int64) if slack is None else faces_between(surface, end, node, (1 + slack) * size)
+            )
+            if not len(faces):
+                faces = faces_between(surface, end, end, 2 * FARTHEST * size)
+            self.fields.append(DistanceField(Region(surface, np.sort(faces)), place, FARTHEST * size))
 
     def run(self, guess: Place, side: float) -> Settled | None:
         """The node nearest to a guess, on the side where A's edge meets B's counter-clockwise (`side` 1) or not (-1).
