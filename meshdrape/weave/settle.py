@@ -88,16 +88,25 @@ class NodeSearch:
         self.surface = surface
         self.parents = (a, b)
         self.length = np.array([warp, weft])
-        node = SurfacePoint.from_frame(surface, *guess)
-        self.fields = []
-        for place, size in zip(self.parents, self.length.tolist(), strict=True):
-            end = SurfacePoint.from_frame(surface, *place)
-            faces = (
-                np.empty(0, dtype=np.int64) if slack is None else faces_between(surface, end, node, (1 + slack) * size)
-            )
-            if not len(faces):
-                faces = faces_between(surface, end, end, 2 * FARTHEST * size)
-            self.fields.append(DistanceField(Region(surface, np.sort(faces)), place, FARTHEST * size))
+        ends = [SurfacePoint.from_frame(surface, *place) for place in self.parents]
+        sizes = self.length.tolist()
+        regions = []
+        if slack is not None:
+            node = SurfacePoint.from_frame(surface, *guess)
+            ways = [
+                faces_between(surface, end, node, (1 + slack) * size) for end, size in zip(ends, sizes, strict=True)
+            ]
+            if all(len(way) for way in ways):
+                regions = [Region(surface, np.union1d(*ways))] * 2
+        if not regions:
+            regions = [
+                Region(surface, np.sort(faces_between(surface, end, end, 2 * FARTHEST * size)))
+                for end, size in zip(ends, sizes, strict=True)
+            ]
+        self.fields = [
+            DistanceField(region, place, FARTHEST * size)
+            for region, place, size in zip(regions, self.parents, sizes, strict=True)
+        ]
 
     def run(self, guess: Place, side: float) -> Settled | None:
         """The node nearest to a guess, on the side where A's edge meets B's counter-clockwise (`side` 1) or not (-1).
