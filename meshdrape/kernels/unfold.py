@@ -32,8 +32,8 @@ def lay_flat(vertices, faces, corner, frame):
         wy = nz * ux - nx * uz
         wz = nx * uy - ny * ux
         corner[f, 0] = x1
-        corner[f, 1] = vx * ux + vy * uy + vz * uz
-        corner[f, 2] = vx * wx + vy * wy + vz * wz
+        corner[f, 1] = vx * ux + vz * uz + vy * uy
+        corner[f, 2] = vx * wx + vz * wz + vy * wy
         for k in range(3):
             frame[f, k] = vertices[a, k]
         frame[f, 3] = ux
@@ -115,4 +115,4 @@ def corner_angles(vertices, faces, angle):
             nx = uy * vz - uz * vy
             ny = uz * vx - ux * vz
             nz = ux * vy - uy * vx
-            angle[f, k] = math.atan2(math.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uy * vy + uz * vz)
+            angle[f, k] = math.atan2(math.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uz * vz + uy * vy)
