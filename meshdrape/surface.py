@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import MouldError
 from meshdrape.kernels.tables import Unfolding
+from meshdrape.kernels.unfold import corner_angles, join, lay_flat
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -144,12 +146,9 @@ class Surface:
     @cached_property
     def corner_angle(self) -> FloatArray:
         """Angle of each face at each of its corners, (m, 3), rad."""
-        angles = np.empty((len(self.faces), 3))
-        for k in range(3):
-            a, b, c = (self.vertices[self.faces[:, (k + s) % 3]] for s in range(3))
-            u, v = b - a, c - a
-            angles[:, k] = np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))
-        return angles
+        angle = np.empty((len(self.faces), 3))
+        corner_angles(self.vertices, self.faces, angle)
+        return angle
 
     @cached_property
     def vertex_angle(self) -> FloatArray:
@@ -281,21 +280,29 @@ def _neighbours(faces: IntArray, n_vertices: int) -> IntArray:
     """3 g + l across each edge, (m, 3); -1 at a border."""
     tail = faces.ravel()
     head = faces[:, [1, 2, 0]].ravel()
+    key = np.minimum(tail, head) * n_vertices + np.maximum(tail, head)
+    order = np.argsort(key, kind="stable")
+    ordered, first = key[order], tail[order]
+    pair = np.flatnonzero(ordered[1:] == ordered[:-1])
+    # two half-edges over one edge, of opposite sense
+    if (np.diff(pair) == 1).any() or (first[pair] == first[pair + 1]).any():
+        _refuse(tail, head, n_vertices)
+    found = np.full(len(tail), -1, dtype=np.int64)
+    found[order[pair]], found[order[pair + 1]] = order[pair + 1], order[pair]
+    return found.reshape(-1, 3)
+
+
+def _refuse(tail: IntArray, head: IntArray, n_vertices: int) -> NoReturn:
+    """Name the first half-edge that there is twice."""
     key = tail * n_vertices + head
     order = np.argsort(key, kind="stable")
-    ordered = key[order]
-    repeated = np.flatnonzero(ordered[1:] == ordered[:-1])
-    if len(repeated):
-        h = int(order[repeated[0]])
-        msg = (
-            f"{len(repeated)} edges are run through twice in the same sense, first the edge of vertices {tail[h]} and "
-            f"{head[h]}: the mesh is non-manifold or its triangles are not oriented alike; repair it with --heal"
-        )
-        raise MouldError(msg)
-    reverse = head * n_vertices + tail
-    at = np.minimum(np.searchsorted(ordered, reverse), len(ordered) - 1)
-    found = ordered[at] == reverse
-    return np.where(found, order[at], -1).reshape(-1, 3)
+    repeated = np.flatnonzero(key[order][1:] == key[order][:-1])
+    h = int(order[repeated[0]])
+    msg = (
+        f"{len(repeated)} edges are run through twice in the same sense, first the edge of vertices {tail[h]} and "
+        f"{head[h]}: the mesh is non-manifold or its triangles are not oriented alike; repair it with --heal"
+    )
+    raise MouldError(msg)
 
 
 def _rim(faces: IntArray, neighbour: IntArray, n_mould_faces: int) -> NDArray[np.int8]:
@@ -312,42 +319,17 @@ def _rim(faces: IntArray, neighbour: IntArray, n_mould_faces: int) -> NDArray[np
 
 def _unfold(surface: Surface) -> Unfolding:
     m = len(surface.faces)
-    u, v = surface._corner_vectors
-    x1 = np.linalg.norm(u, axis=1)
-    e1 = u / x1[:, None]
-    e2 = np.cross(surface.face_normal, e1)
-    corner = np.stack([x1, np.einsum("ij,ij->i", v, e1), np.einsum("ij,ij->i", v, e2)], axis=1)
-    place = np.zeros((m, 3, 2))
-    place[:, 1, 0] = corner[:, 0]
-    place[:, 2] = corner[:, 1:]
-    along = np.roll(place, -1, axis=1) - place
-    along /= np.linalg.norm(along, axis=2)[..., None]
-    line = np.empty((m, 3, 3))
-    line[..., 0] = -along[..., 1]
-    line[..., 1] = along[..., 0]
-    line[..., 2] = np.einsum("mkd,mkd->mk", line[..., :2], place)
-    neighbour = surface.face_neighbour
-    other = np.maximum(neighbour, 0)
-    g, l = other // 3, other % 3  # noqa: E741
-    # our edge runs against theirs: their direction there is the reverse of ours
-    there = -along[g, l]
-    c = np.einsum("mkd,mkd->mk", along, there)
-    s = along[..., 0] * there[..., 1] - along[..., 1] * there[..., 0]
-    # the middle of the edge is the same point on both sides
-    middle = 0.5 * (place + np.roll(place, -1, axis=1))
-    crossing = np.empty((m, 3, 4))
-    crossing[..., 0] = c
-    crossing[..., 1] = s
-    crossing[..., 2] = middle[g, l, 0] - (c * middle[..., 0] - s * middle[..., 1])
-    crossing[..., 3] = middle[g, l, 1] - (s * middle[..., 0] + c * middle[..., 1])
-    lines, crossings = line.reshape(m, 9), crossing.reshape(m, 12)
+    corner, frame = np.empty((m, 3)), np.empty((m, 9))
+    line, crossing, plane = np.empty((m, 9)), np.empty((m, 12)), np.empty((m, 24))
+    lay_flat(surface.vertices, surface.faces, corner, frame)
+    join(corner, surface.face_neighbour, line, crossing, plane)
     return Unfolding(
-        plane=np.concatenate([lines, crossings, corner], axis=1),
-        line=lines,
-        crossing=crossings,
-        neighbour=neighbour.astype(np.int32),
+        plane=plane,
+        line=line,
+        crossing=crossing,
+        neighbour=surface.face_neighbour.astype(np.int32),
         corner=corner,
-        frame=np.concatenate([surface.vertices[surface.faces[:, 0]], e1, e2], axis=1),
+        frame=frame,
         vertex=surface.faces.astype(np.int32),
         vertex_angle=np.where(surface.border_vertex, 0.0, surface.vertex_angle),
         rim=np.array(surface.face_rim),

@@ -114,7 +114,7 @@ def surface_distance(
     size = surface.diagonal
     # no path is shorter, but for round-off: libigl's own, and that of the places
     least = chord * (1 - 1e-9) - 32 * float(np.finfo(float).eps * np.abs(surface.vertices).max())
-    reach = max(bound or 0.0, 1.1 * chord, 1e-9 * size)
+    reach = max(1.1 * chord if bound is None else bound, chord, 1e-9 * size)
     while True:
         faces = faces_between(surface, a, b, reach)
         if len(faces):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -28,12 +30,10 @@ class Patch:
 
     def __init__(self, surface: Surface, faces: IntArray) -> None:
         used, compact = np.unique(surface.faces[faces], return_inverse=True)
-        self._vertices: list[FloatArray] = list(surface.vertices[used])
-        self._faces: list[tuple[int, int, int]] = []
-        self._pieces: dict[int, list[int]] = {}
-        self._parent: list[int] = []
-        for face, (a, b, c) in zip(faces.tolist(), compact.reshape(-1, 3).tolist(), strict=True):
-            self._add(face, (a, b, c))
+        self._vertices: list[list[float]] = surface.vertices[used].tolist()
+        self._faces: list[list[int]] = compact.reshape(-1, 3).tolist()
+        self._parent: list[int] = faces.tolist()
+        self._pieces: dict[int, list[int]] = {face: [n] for n, face in enumerate(self._parent)}
 
     @classmethod
     def around(cls, surface: Surface, faces: IntArray, a: SurfacePoint, b: SurfacePoint, reach: float) -> Patch:
@@ -50,30 +50,10 @@ class Patch:
             return cls(surface, faces)
         return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius)
 
-    @classmethod
-    def within(cls, surface: Surface, faces: IntArray, ends: tuple[SurfacePoint, ...], reach: float) -> Patch:
-        """A patch that holds whatever of the faces lies within `reach` (mm) of one of the end points, in space."""
-        places = np.array([end.position(surface) for end in ends])
-        centre = 0.5 * (places.min(axis=0) + places.max(axis=0))
-        radius = 1.1 * (reach + float(np.linalg.norm(places - centre, axis=1).max()))
-        corners = surface.vertices[surface.faces[faces]]
-        if float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()) <= 8 * radius:
-            return cls(surface, faces)
-        return _cut(cls(surface, np.empty(0, dtype=np.int64)), surface, faces, ends, centre, radius, whole=True)
-
-    def _add(self, face: int, triangle: tuple[int, int, int]) -> None:
+    def _add(self, face: int, triangle: list[int]) -> None:
         self._pieces.setdefault(face, []).append(len(self._faces))
         self._faces.append(triangle)
         self._parent.append(face)
-
-    def copy(self) -> Patch:
-        """A patch of its own, to insert a trial point into."""
-        other = object.__new__(Patch)
-        other._vertices = list(self._vertices)
-        other._faces = list(self._faces)
-        other._pieces = {face: list(pieces) for face, pieces in self._pieces.items()}
-        other._parent = list(self._parent)
-        return other
 
     @property
     def n_faces(self) -> int:
@@ -98,60 +78,71 @@ class Patch:
         KeyError
             If the patch does not hold the point.
         """
-        p = np.asarray(position, dtype=np.float64)
+        p: list[float] = np.asarray(position, dtype=np.float64).tolist()
         # a point on the edge of a face that was cut away belongs to the face beyond as well
         pieces = self._pieces.get(face) or range(len(self._faces))
         if not pieces:
             raise KeyError(face)
-        weights = self._barycentric([self._faces[n] for n in pieces], p)
-        best = int(np.argmax(weights.min(axis=1)))
+        weights = [_barycentric(p, *(self._vertices[v] for v in self._faces[n])) for n in pieces]
+        best = max(range(len(pieces)), key=lambda n: min(weights[n]))
         piece, weight = pieces[best], weights[best]
-        if not weight.min() >= -1e-6:
+        if not min(weight) >= -1e-6:
             raise KeyError(face)
         a, b, c = self._faces[piece]
-        corner = int(np.argmax(weight))
+        corner = weight.index(max(weight))
         if 1 - weight[corner] <= SNAP:
-            vertex = (a, b, c)[corner]
-            return vertex, float(np.linalg.norm(self._vertices[vertex] - p))
+            vertex = self._faces[piece][corner]
+            return vertex, math.dist(self._vertices[vertex], p)
         new = len(self._vertices)
-        opposite = int(np.argmin(weight))
+        opposite = weight.index(min(weight))
         if weight[opposite] <= SNAP:
             edge = (opposite + 1) % 3
             u, v = self._faces[piece][edge], self._faces[piece][(edge + 1) % 3]
-            along = self._vertices[v] - self._vertices[u]
-            t = float((p - self._vertices[u]) @ along / (along @ along))
-            foot = self._vertices[u] + t * along
+            tail, along = self._vertices[u], _less(self._vertices[v], self._vertices[u])
+            t = _dot(_less(p, tail), along) / _dot(along, along)
+            foot = [x + t * dx for x, dx in zip(tail, along, strict=True)]
             self._vertices.append(foot)
             for n in [n for n, f in enumerate(self._faces) if u in f and v in f]:
                 self._split_edge(n, u, v, new)
-            return new, float(np.linalg.norm(foot - p))
+            return new, math.dist(foot, p)
         self._vertices.append(p)
-        self._replace(piece, [(a, b, new), (b, c, new), (c, a, new)])
+        self._replace(piece, [[a, b, new], [b, c, new], [c, a, new]])
         return new, 0.0
 
-    def _barycentric(self, faces: list[tuple[int, int, int]], p: FloatArray) -> FloatArray:
-        """Barycentric coordinates (n, 3) of a point in each of some triangles."""
-        a, b, c = np.moveaxis(np.array([[self._vertices[v] for v in face] for face in faces]), 1, 0)
-        u, v, w = b - a, c - a, p - a
-        # by cross products: of a needle, products of lengths would leave nothing but round-off
-        normal = np.cross(u, v)
-        double2 = np.einsum("ij,ij->i", normal, normal)
-        beta = np.einsum("ij,ij->i", np.cross(w, v), normal) / double2
-        gamma = np.einsum("ij,ij->i", np.cross(u, w), normal) / double2
-        return np.stack([1 - beta - gamma, beta, gamma], axis=1)
-
     def _split_edge(self, n: int, u: int, v: int, new: int) -> None:
-        a, b, c = self._faces[n]
-        halves = [tuple(new if w == gone else w for w in (a, b, c)) for gone in (v, u)]
-        self._replace(n, [(p, q, r) for p, q, r in halves])
+        self._replace(n, [[new if w == gone else w for w in self._faces[n]] for gone in (v, u)])
 
-    def _replace(self, n: int, pieces: list[tuple[int, int, int]]) -> None:
+    def _replace(self, n: int, pieces: list[list[int]]) -> None:
         self._faces[n] = pieces[0]
-        parent = self._parent[n]
         for piece in pieces[1:]:
-            self._pieces[parent].append(len(self._faces))
-            self._faces.append(piece)
-            self._parent.append(parent)
+            self._add(self._parent[n], piece)
+
+
+def _barycentric(p: list[float], a: list[float], b: list[float], c: list[float]) -> list[float]:
+    """Barycentric coordinates (3,) of a point in a triangle.
+
+    By cross products: of a needle, products of lengths would leave nothing but round-off. One of no area holds nothing.
+    """
+    u, v, w = _less(b, a), _less(c, a), _less(p, a)
+    normal = _cross(u, v)
+    double2 = _dot(normal, normal)
+    if double2 == 0:
+        return [-math.inf] * 3
+    beta, gamma = _dot(_cross(w, v), normal) / double2, _dot(_cross(u, w), normal) / double2
+    return [1 - beta - gamma, beta, gamma]
+
+
+# numpy takes longer to begin than these to be done
+def _less(a: list[float], b: list[float]) -> list[float]:
+    return [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+
+
+def _dot(a: list[float], b: list[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: list[float], b: list[float]) -> list[float]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 def _cut(
@@ -161,17 +152,15 @@ def _cut(
     ends: tuple[SurfacePoint, ...],
     centre: FloatArray,
     radius: float,
-    *,
-    whole: bool = False,
 ) -> Patch:
     """Fill an empty patch with the hull, face by face, of what a ball keeps of the edges, and of the end points.
 
-    A path inside the ball crosses a face between two kept pieces of its edges, or from an end: the hull holds it. What
-    else of a face lies in the ball is held if it meets no edge, or if `whole`, for points to be inserted later.
+    A path inside the ball crosses a face between two kept pieces of its edges, or from an end: the hull holds it.
+    Where a face has none of its edges in the ball, what of it lies there is held.
     """
     number: dict[tuple[int, int, int], int] = {}
 
-    def vertex(key: tuple[int, int, int], position: FloatArray) -> int:
+    def vertex(key: tuple[int, int, int], position: list[float]) -> int:
         if key not in number:
             number[key] = len(patch._vertices)
             patch._vertices.append(position)
@@ -187,7 +176,7 @@ def _cut(
                 continue
             piece = []
             for side, t in enumerate(kept):
-                position = surface.vertices[u] + t * (surface.vertices[v] - surface.vertices[u])
+                position = (surface.vertices[u] + t * (surface.vertices[v] - surface.vertices[u])).tolist()
                 # a piece that goes to the corner ends in the mesh's own vertex
                 key = (u, u, 0) if t == 0 else (v, v, 0) if t == 1 else (u, v, side)
                 piece.append(vertex(key, position))
@@ -195,7 +184,7 @@ def _cut(
         inside = [end.position(surface) for end in ends if end.face == face and end.barycentric.min() > SNAP]
         first = len(patch._vertices)
         frame = surface.unfolding.frame[face]
-        if whole or not ring:
+        if not ring:
             inside += _ball_outline(surface, face, centre, radius)
         # an end on an edge gives the face some depth, lest nothing be left of it but that edge
         middle = surface.vertices[surface.faces[face]].mean(axis=0)
@@ -203,12 +192,12 @@ def _cut(
             if end.face == face:
                 inward = middle - end.position(surface)
                 inside.append(end.position(surface) + min(0.5, radius / float(np.linalg.norm(inward))) * inward)
-        patch._vertices += inside
+        patch._vertices += [place.tolist() for place in inside]
         points = list(dict.fromkeys(ring)) + list(range(first, first + len(inside)))
-        flat = {n: ((p := patch._vertices[n] - frame[:3]) @ frame[3:6], p @ frame[6:9]) for n in points}
+        flat = {n: ((p := np.array(patch._vertices[n]) - frame[:3]) @ frame[3:6], p @ frame[6:9]) for n in points}
         hull = _hull(points, flat)
         for n in range(1, len(hull) - 1):
-            patch._add(face, (hull[0], hull[n], hull[n + 1]))
+            patch._add(face, [hull[0], hull[n], hull[n + 1]])
     return patch
 
 

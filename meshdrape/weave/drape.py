@@ -66,8 +66,8 @@ def drape(
         Default the longest axis of the bounding box that is not along the normal. With a path it only chooses which
         way along it the net counts; default as the path is drawn.
     engine : "fast" or "libigl"
-        "libigl" has every node off the generators placed from libigl's distances alone: slow, the reference that
-        "fast" agrees with to 1e-9 of the spacing.
+        "libigl" has every node off the generators looked for by its exact distances from both parents and taken only
+        where libigl measures the spacing: slow, the reference that "fast" agrees with to 1e-9 of the spacing.
     extent : (warp-, warp+, weft-, weft+), mm
         Cloth from the seed each way; default as far as the mould reaches.
     warp_turn, weft_turn : float, rad

@@ -10,6 +10,7 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.geodesic.field import Place
 from meshdrape.kernels.edges import WARP, WEFT, edge_ends, edge_key, keep_edge
 from meshdrape.kernels.place import FOLD_SINE
 from meshdrape.kernels.shear import past_stop
@@ -20,7 +21,7 @@ from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
 from meshdrape.weave.scan import scan
-from meshdrape.weave.settle import Edge, NodeSearch, Place, Settled, shortest
+from meshdrape.weave.settle import Edge, NodeSearch, Settled, shortest
 from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
@@ -99,15 +100,14 @@ class Judge:
 
     def _judge(self, i: int, j: int, sense: Sense) -> None:
         """Keep a node if there is no shorter way from either parent; else find the one that has none."""
-        search = self._search(i, j, sense, JUDGED)
         node = self._place((i, j))
-        lengths = (self._fabric.warp_spacing, self._fabric.weft_spacing)
-        if all(
-            shortest(self._surface, end, node, size) for end, size in zip((search.a, search.b), lengths, strict=True)
+        warp_parent, weft_parent = self._place((i - sense[0], j)), self._place((i, j - sense[1]))
+        if shortest(self._surface, warp_parent, node, self._fabric.warp_spacing) and shortest(
+            self._surface, weft_parent, node, self._fabric.weft_spacing
         ):
             self._keep_cell(i, j, sense)
             return
-        found = search.run(node, float(sense[0] * sense[1]))
+        found = self._search(i, j, sense, JUDGED).run(node, float(sense[0] * sense[1]))
         if found is None or self._folded(i, j, sense, found):
             self._settle(i, j, sense)
         else:

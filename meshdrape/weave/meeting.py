@@ -37,7 +37,7 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     mesh = surface.unfolding
     spacing = fabric.shortest
     diameter = surface.face_diameter
-    small = mould.longest_edge < SMALL_FACE * spacing
+    small = float(diameter[: len(mould.faces)].max()) < SMALL_FACE * spacing
     window = np.empty((len(diameter), 4), dtype=np.int64)
     # collar faces reach far out; on them windows say nothing
     measured = np.where(np.arange(len(diameter)) < len(mould.faces), diameter, np.inf)

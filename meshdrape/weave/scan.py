@@ -10,15 +10,15 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.geodesic.distance import exact_distances
+from meshdrape.geodesic.field import Place
 from meshdrape.surface import SurfacePoint
-from meshdrape.weave.settle import NodeSearch, Place, Settled, insert, step_from
+from meshdrape.weave.settle import NodeSearch, Settled, step_from
 
 FloatArray = NDArray[np.float64]
 
 # Directions tried about a parent.
 DIRECTIONS = 72
-# A path that libigl finds shorter than the circle's radius by more than this share is no radius.
+# A straight path to which another is shorter by more than this share is no radius.
 NO_RADIUS = 1e-9
 # A point this near to the cell's known corner, in spacings, is that corner.
 SAME = 1e-3
@@ -80,15 +80,10 @@ def _misses(search: NodeSearch, turns: FloatArray) -> list[tuple[Place | None, f
     NaN where a path leaves the surface, or is not the shortest to its end.
     """
     radius = float(search.length[0])
-    places = [step_from(search.surface, search.a, radius * np.array([np.cos(t), np.sin(t)])) for t in turns]
-    trial = search.patch.copy()
-    vertices = [None if place is None else insert(trial, search.surface, place) for place in places]
-    kept = [vertex for vertex in vertices if vertex is not None]
-    to_a, to_b = (dict(zip(kept, exact_distances(trial, p, kept), strict=True)) for p in search.parents)
-    misses = []
-    for place, vertex in zip(places, vertices, strict=True):
-        if vertex is None or to_a[vertex] < radius * (1 - NO_RADIUS):
-            misses.append((place, float("nan")))
-        else:
-            misses.append((place, float(to_b[vertex] - search.length[1])))
-    return misses
+    places = [step_from(search.surface, search.parents[0], radius * np.array([np.cos(t), np.sin(t)])) for t in turns]
+    face = np.array([-1 if place is None else place[0] for place in places])
+    xy = np.array([(0.0, 0.0) if place is None else place[1:] for place in places])
+    to_a, to_b = (field.distances(face, xy) for field in search.fields)
+    is_radius = np.isfinite(to_b) & (np.abs(to_a - radius) <= radius * NO_RADIUS)
+    misses = np.where(is_radius, to_b - search.length[1], np.nan)
+    return list(zip(places, misses.tolist(), strict=True))

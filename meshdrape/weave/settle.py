@@ -1,7 +1,8 @@
 """Nodes that libigl decides: the authority where straight paths cannot reach, or where none is to be trusted.
 
 Behind a saddle vertex lies a shadow that no straight path enters: the shortest path to a node in there bends at the
-vertex. Distances know nothing of that, so a node is found from distances alone.
+vertex. Distances know nothing of that, so such a node is looked for where the distances from its two parents are the
+spacings, and is one only if libigl measures the same.
 """
 
 from __future__ import annotations
@@ -11,23 +12,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.geodesic.distance import exact_distances, surface_distance
-from meshdrape.geodesic.patch import Patch, faces_between
+from meshdrape.geodesic.distance import surface_distance
+from meshdrape.geodesic.field import DistanceField, Place, Region, Way
+from meshdrape.geodesic.patch import faces_between
 from meshdrape.kernels.place import FOLD_SINE
 from meshdrape.kernels.walk import WALKED, turn_into, walk
 from meshdrape.surface import Surface, SurfacePoint
 
 FloatArray = NDArray[np.float64]
-Place = tuple[int, float, float]
 
-# Distances are met to this share of the spacing; libigl's own round-off is about 1e-13.
+# libigl's distances are those asked for to this share of them; its own round-off is about 1e-13.
 MET = 3e-11
-MAX_TRIALS = 30
-# Steps of the differences that give a direction, in spacings: its error is their square. The coarse one is for a
-# straight path to start from, which then corrects itself; the fine one for edges that bend, and have nothing else.
-COARSE, FINE = 1e-3, 1e-4
+# The search has closed at this share of the spacing, or where round-off lets it come no closer.
+CLOSED = 1e-14
+MAX_TRIALS, MAX_HALVINGS = 30, 6
 # Straight paths that end this near to the node, in spacings, are the edges themselves.
 STRAIGHT = 1e-10
+# Paths longer than the spacing by more than this factor are of no use to a search.
+FARTHEST = 1.5
 
 
 @dataclass(frozen=True)
@@ -84,77 +86,95 @@ class NodeSearch:
         slack: float | None = None,
     ) -> None:
         self.surface = surface
-        self.a, self.b = a, b
+        self.parents = (a, b)
         self.length = np.array([warp, weft])
-        point_a, point_b = SurfacePoint.from_frame(surface, *a), SurfacePoint.from_frame(surface, *b)
-        node = SurfacePoint.from_frame(surface, *guess)
-        # whatever lies within one spacing of either, and a margin for trial points beyond the node
-        reach = 1.2 * (warp + weft)
-        faces = np.empty(0, dtype=np.int64)
+        ends = [SurfacePoint.from_frame(surface, *place) for place in self.parents]
+        sizes = self.length.tolist()
+        regions = []
         if slack is not None:
+            node = SurfacePoint.from_frame(surface, *guess)
             ways = [
-                faces_between(surface, *way, (1 + slack) * size)
-                for way, size in (((point_a, node), warp), ((point_b, node), weft))
+                faces_between(surface, end, node, (1 + slack) * size) for end, size in zip(ends, sizes, strict=True)
             ]
             if all(len(way) for way in ways):
-                faces = np.union1d(*ways)
-        if not len(faces):
-            faces = np.union1d(*(faces_between(surface, point, point, reach) for point in (point_a, point_b)))
-        self.bare = Patch.within(surface, faces, (point_a, point_b, node), 0.55 * reach)
-        self.patch = self.bare.copy()
-        self.parents = [self.patch.insert(p.face, p.position(surface))[0] for p in (point_a, point_b)]
+                regions = [Region(surface, np.union1d(*ways))] * 2
+        if not regions:
+            regions = [
+                Region(surface, np.sort(faces_between(surface, end, end, 2 * FARTHEST * size)))
+                for end, size in zip(ends, sizes, strict=True)
+            ]
+        self.fields = [
+            DistanceField(region, place, FARTHEST * size)
+            for region, place, size in zip(regions, self.parents, sizes, strict=True)
+        ]
 
     def run(self, guess: Place, side: float) -> Settled | None:
         """The node nearest to a guess, on the side where A's edge meets B's counter-clockwise (`side` 1) or not (-1).
 
-        None where there is no such point, or the search does not close.
+        None where there is no such point, the search does not close, or libigl knows of a shorter way.
         """
-        place = self._meet(guess)
-        if place is None:
-            return None
-        edges = [self._edge(k, place) for k in range(2)]
-        warp_edge, weft_edge = edges
-        if warp_edge is None or weft_edge is None:
-            return None
+        for method in (self._meet, self._meet_over_ridges):
+            found = method(guess)
+            settled = None if found is None else self._settled(*found, side)
+            if settled is not None:
+                return settled
+        return None
+
+    def _settled(self, place: Place, ways: list[Way], side: float) -> Settled | None:
+        """The node at a place, if it is on the right side, and libigl knows of no other distance."""
+        warp_edge, weft_edge = (self._edge(k, place, way) for k, way in enumerate(ways))
         p, q = warp_edge.arrive, weft_edge.arrive
         # sine of the angle from A's edge to B's: folded, as for straight paths, within a degree of parallel
         if (p[0] * q[1] - p[1] * q[0]) * side <= FOLD_SINE:
             return None
+        for parent, length in zip(self.parents, self.length.tolist(), strict=True):
+            distance, moved = _measured(self.surface, parent, place, length)
+            if not abs(distance - length) <= length * MET + moved:
+                return None
         return Settled(place, warp_edge, weft_edge)
 
-    def distances(self, place: Place) -> FloatArray | None:
-        """Shortest distances (2,) from a place to A and to B, mm; None where it lies off the patch."""
-        trial = self.patch.copy()
-        vertex = insert(trial, self.surface, place)
-        if vertex is None:
+    def _meet(self, guess: Place) -> tuple[Place, list[Way]] | None:
+        """Newton's method on the two distances, whose slopes are the directions in which the shortest paths arrive."""
+        place, ways = guess, self._ways(guess)
+        if ways is None:
             return None
-        found = exact_distances(trial, vertex, self.parents)
-        return found if np.isfinite(found).all() else None
+        longest = 0.3 * float(self.length.min())
+        for _ in range(MAX_TRIALS):
+            miss = self._miss(ways)
+            if np.abs(miss).max() <= CLOSED:
+                break
+            slope = np.stack([way.arrive for way in ways]) / self.length[:, None]
+            move = -_inverse(slope) @ miss
+            move *= min(1.0, longest / float(np.linalg.norm(move) or 1.0))
+            nearer = self._nearer(place, move, float(np.linalg.norm(miss)))
+            if nearer is None:
+                break
+            place, ways = nearer
+        return (place, ways) if np.abs(self._miss(ways)).max() <= MET else None
 
-    def _meet(self, guess: Place) -> Place | None:
-        """Broyden's method on the two distances, in the plane of the guess's face unfolded along straight paths."""
-        shift = np.zeros(2)
-        found = self.distances(guess)
-        slope = self._slopes(guess)
-        if found is None or slope is None:
+    def _meet_over_ridges(self, guess: Place) -> tuple[Place, list[Way]] | None:
+        """Broyden's method: where two ways are equally long the slopes jump, and Newton's goes to and fro for ever.
+
+        In the plane of the guess's face, unfolded along straight paths.
+        """
+        ways = self._ways(guess)
+        if ways is None:
             return None
-        miss = found - self.length
-        inverse = _inverse(slope)
+        shift, miss = np.zeros(2), self._miss(ways)
+        inverse = _inverse(np.stack([way.arrive for way in ways]) / self.length[:, None])
+        longest = 0.3 * float(self.length.min())
         place: Place | None = guess
         for _ in range(MAX_TRIALS):
-            if np.abs(miss / self.length).max() <= MET:
-                return place
             move = -inverse @ miss
-            size = float(np.linalg.norm(move))
-            longest = 0.3 * float(self.length.min())
-            if size > longest:
-                move *= longest / size
+            move *= min(1.0, longest / float(np.linalg.norm(move) or 1.0))
             place = step_from(self.surface, guess, shift + move)
-            found = None if place is None else self.distances(place)
-            if found is None:
+            ways = None if place is None else self._ways(place)
+            if place is None or ways is None:
                 return None
-            change = found - self.length - miss
+            change = self._miss(ways) - miss
             shift, miss = shift + move, miss + change
+            if np.abs(miss).max() <= MET:
+                return place, ways
             # good Broyden: the inverse that maps this change to this move, nearest to the last
             mapped = inverse @ change
             scale = float(move @ mapped)
@@ -162,43 +182,30 @@ class NodeSearch:
                 inverse = inverse + np.outer(move - mapped, move @ inverse) / scale
         return None
 
-    def _slopes(self, place: Place, step: float = COARSE) -> FloatArray | None:
-        """Gradients (2, 2) of the distances to A and to B at a place, in the frame of its face."""
-        slopes = self._gradients(self.patch, place, self.parents, step)
-        return None if slopes is None or np.linalg.norm(slopes, axis=1).min() <= 0.1 else slopes
+    def _nearer(self, place: Place, move: FloatArray, miss: float) -> tuple[Place, list[Way]] | None:
+        """The place after a move, or half of it, and so on, that misses by less; None where none does."""
+        for _ in range(MAX_HALVINGS):
+            trial = step_from(self.surface, place, move)
+            ways = None if trial is None else self._ways(trial)
+            if trial is not None and ways is not None and np.linalg.norm(self._miss(ways)) < miss:
+                return trial, ways
+            move = 0.5 * move
+        return None
 
-    def _gradients(self, patch: Patch, place: Place, sources: list[int], step: float) -> FloatArray | None:
-        """Gradients (n, 2) at a place of distances from vertices of a patch, by differences over a step in spacings."""
-        step *= float(self.length.min())
-        around = [step_from(self.surface, place, move) for move in step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])]
-        places = [near for near in around if near is not None]
-        if len(places) < len(around):
-            return None
-        # all in one patch is quick; where they leave triangles too flat for libigl, each gets a patch of its own
-        found = self._distances_from(patch, sources, places)
-        if not np.isfinite(found).all():
-            found = np.concatenate([self._distances_from(patch, sources, [near]) for near in places], axis=1)
-        if not np.isfinite(found).all():
-            return None
-        return np.asarray(np.stack([found[:, 0] - found[:, 1], found[:, 2] - found[:, 3]], axis=1) / (2 * step))
+    def _ways(self, place: Place) -> list[Way] | None:
+        """The shortest paths from A and from B to a place; None where it lies beyond the faces searched."""
+        ways = [way for way in (field.to(place) for field in self.fields) if way is not None]
+        return ways if len(ways) == len(self.fields) else None
 
-    def _distances_from(self, patch: Patch, sources: list[int], places: list[Place]) -> FloatArray:
-        """Distances (n_sources, n_places) from vertices of a patch; infinite where libigl or the patch cannot tell."""
-        trial = patch.copy()
-        ends = [insert(trial, self.surface, place) for place in places]
-        targets = [end for end in ends if end is not None]
-        if len(targets) < len(ends):
-            return np.full((len(sources), len(places)), np.inf)
-        return np.array([exact_distances(trial, source, targets) for source in sources])
+    def _miss(self, ways: list[Way]) -> FloatArray:
+        """How much longer the two are than the spacings, in spacings, (2,)."""
+        return np.asarray(np.array([way.length for way in ways]) / self.length - 1.0)
 
-    def _edge(self, k: int, place: Place) -> Edge | None:
+    def _edge(self, k: int, place: Place, way: Way) -> Edge:
         """The edge from a parent, A or B, to the node: straight where a straight path gets there, else bent."""
-        parent, length = (self.a, self.b)[k], float(self.length[k])
-        leave = self._leaving(parent, place, COARSE)
-        if leave is None:
-            return None
+        parent, length = self.parents[k], float(self.length[k])
         target = SurfacePoint.from_frame(self.surface, *place).position(self.surface)
-        straight, mesh = leave, self.surface.unfolding
+        straight, mesh = way.leave, self.surface.unfolding
         for _ in range(4):
             code, face, x, y, dx, dy = walk(mesh.plane, mesh.neighbour, *parent, *straight, length)
             if code != WALKED:
@@ -213,28 +220,19 @@ class NodeSearch:
             turn = float(gap @ np.array([-dy, dx])) / length
             straight = straight + turn * np.array([-straight[1], straight[0]])
             straight = straight / np.linalg.norm(straight)
-        leave, slopes = self._leaving(parent, place, FINE), self._slopes(place, FINE)
-        if leave is None or slopes is None:
-            return None
-        # the gradient of a distance is the direction in which its path arrives
-        return Edge(leave, slopes[k] / np.linalg.norm(slopes[k]), bent=True)
-
-    def _leaving(self, parent: Place, place: Place, step: float) -> FloatArray | None:
-        """Direction (2,) at a parent in which the shortest path to the node leaves: less the distance's gradient."""
-        trial = self.bare.copy()
-        node = insert(trial, self.surface, place)
-        slope = None if node is None else self._gradients(trial, parent, [node], step)
-        if slope is None:
-            return None
-        size = float(np.linalg.norm(slope[0]))
-        return -slope[0] / size if size > 0.1 else None
+        return Edge(way.leave, way.arrive, bent=True)
 
 
 def shortest(surface: Surface, tail: Place, head: Place, length: float) -> bool:
     """Whether no way between two places is shorter than the edge of a given length (mm) that joins them."""
-    ends = [SurfacePoint.from_frame(surface, *place) for place in (tail, head)]
-    distance, moved = surface_distance(surface, ends[0], ends[1], bound=length * (1 + 1e-6))
+    distance, moved = _measured(surface, tail, head, length)
     return distance >= length * (1 - MET) - moved
+
+
+def _measured(surface: Surface, tail: Place, head: Place, length: float) -> tuple[float, float]:
+    """Distance by libigl, mm, where it is expected to be `length`, and by how much it may be off for points snapped."""
+    ends = [SurfacePoint.from_frame(surface, *place) for place in (tail, head)]
+    return surface_distance(surface, ends[0], ends[1], bound=length * (1 + 1e-6))
 
 
 def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
@@ -246,14 +244,6 @@ def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
     mesh = surface.unfolding
     code, face, x, y, dx, dy = walk(mesh.plane, mesh.neighbour, *place, dx, dy, length)
     return (int(face), x + length * dx, y + length * dy) if code == WALKED else None
-
-
-def insert(patch: Patch, surface: Surface, place: Place) -> int | None:
-    """Make a place a vertex of a patch; None where the patch does not hold it."""
-    try:
-        return patch.insert(place[0], SurfacePoint.from_frame(surface, *place).position(surface))[0]
-    except KeyError:
-        return None
 
 
 def _inverse(slope: FloatArray) -> FloatArray:

@@ -1,0 +1,118 @@
+"""The tables of an unfolding, face by face."""
+
+import math
+
+from meshdrape.kernels.cache import kernel
+
+
+@kernel
+def lay_flat(vertices, faces, corner, frame):
+    """Lay every face in a frame of its own: fills `corner` (m, 3) and `frame` (m, 9) of `Unfolding`."""
+    for f in range(len(faces)):
+        a, b, c = faces[f]
+        ux = vertices[b, 0] - vertices[a, 0]
+        uy = vertices[b, 1] - vertices[a, 1]
+        uz = vertices[b, 2] - vertices[a, 2]
+        vx = vertices[c, 0] - vertices[a, 0]
+        vy = vertices[c, 1] - vertices[a, 1]
+        vz = vertices[c, 2] - vertices[a, 2]
+        nx = uy * vz - uz * vy
+        ny = uz * vx - ux * vz
+        nz = ux * vy - uy * vx
+        size = math.sqrt(nx * nx + ny * ny + nz * nz)
+        nx /= size
+        ny /= size
+        nz /= size
+        x1 = math.sqrt(ux * ux + uy * uy + uz * uz)
+        ux /= x1
+        uy /= x1
+        uz /= x1
+        # the y axis, left of the x axis in the plane
+        wx = ny * uz - nz * uy
+        wy = nz * ux - nx * uz
+        wz = nx * uy - ny * ux
+        corner[f, 0] = x1
+        corner[f, 1] = vx * ux + vz * uz + vy * uy
+        corner[f, 2] = vx * wx + vz * wz + vy * wy
+        for k in range(3):
+            frame[f, k] = vertices[a, k]
+        frame[f, 3] = ux
+        frame[f, 4] = uy
+        frame[f, 5] = uz
+        frame[f, 6] = wx
+        frame[f, 7] = wy
+        frame[f, 8] = wz
+
+
+@kernel
+def _side(corner, f, k):
+    """Tail and head of side k of a face in its frame."""
+    x1 = corner[f, 0]
+    x2 = corner[f, 1]
+    y2 = corner[f, 2]
+    if k == 0:
+        return 0.0, 0.0, x1, 0.0
+    if k == 1:
+        return x1, 0.0, x2, y2
+    return x2, y2, 0.0, 0.0
+
+
+@kernel
+def join(corner, neighbour, line, crossing, plane):
+    """From faces laid flat to their sides and the motions over them: fills `line`, `crossing`, `plane`."""
+    for f in range(len(corner)):
+        for k in range(3):
+            px, py, qx, qy = _side(corner, f, k)
+            ex = qx - px
+            ey = qy - py
+            size = math.sqrt(ex * ex + ey * ey)
+            ex /= size
+            ey /= size
+            line[f, 3 * k] = -ey
+            line[f, 3 * k + 1] = ex
+            line[f, 3 * k + 2] = -ey * px + ex * py
+            code = max(neighbour[f, k], 0)
+            g = code // 3
+            rx, ry, tx, ty = _side(corner, g, code - 3 * g)
+            # their side runs against ours
+            hx = rx - tx
+            hy = ry - ty
+            size = math.sqrt(hx * hx + hy * hy)
+            hx /= size
+            hy /= size
+            c = ex * hx + ey * hy
+            s = ex * hy - ey * hx
+            # its middle is the same point on both sides
+            mx = 0.5 * (px + qx)
+            my = 0.5 * (py + qy)
+            at = 4 * k
+            crossing[f, at] = c
+            crossing[f, at + 1] = s
+            crossing[f, at + 2] = 0.5 * (rx + tx) - (c * mx - s * my)
+            crossing[f, at + 3] = 0.5 * (ry + ty) - (s * mx + c * my)
+        for n in range(9):
+            plane[f, n] = line[f, n]
+        for n in range(12):
+            plane[f, 9 + n] = crossing[f, n]
+        for n in range(3):
+            plane[f, 21 + n] = corner[f, n]
+
+
+@kernel
+def corner_angles(vertices, faces, angle):
+    """Angle of each face at each of its corners, rad: fills `angle` (m, 3)."""
+    for f in range(len(faces)):
+        for k in range(3):
+            a = faces[f, k]
+            b = faces[f, (k + 1) % 3]
+            c = faces[f, (k + 2) % 3]
+            ux = vertices[b, 0] - vertices[a, 0]
+            uy = vertices[b, 1] - vertices[a, 1]
+            uz = vertices[b, 2] - vertices[a, 2]
+            vx = vertices[c, 0] - vertices[a, 0]
+            vy = vertices[c, 1] - vertices[a, 1]
+            vz = vertices[c, 2] - vertices[a, 2]
+            nx = uy * vz - uz * vy
+            ny = uz * vx - ux * vz
+            nz = ux * vy - uy * vx
+            angle[f, k] = math.atan2(math.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uz * vz + uy * vy)
