@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from meshdrape.kernels.buckets import bucket, cube_beside
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD
 from meshdrape.kernels.sight import REACH, is_whole, lies_on_cell
@@ -99,11 +100,6 @@ def _triple(u, v, n):
     return n[0] * (u[1] * v[2] - u[2] * v[1]) + n[1] * (u[2] * v[0] - u[0] * v[2]) + n[2] * (u[0] * v[1] - u[1] * v[0])
 
 
-@kernel(inline="always")
-def _bucket(x, y, z, size):
-    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) & (size - 1)
-
-
 @kernel
 def stop_where_met(mesh, net, index, position, order, warp, weft):
     """Take back, in a fixed order, each node that lies on a cell kept before it, and what depends on it.
@@ -130,10 +126,9 @@ def stop_where_met(mesh, net, index, position, order, warp, weft):
     kept = np.full((n_warp, n_weft), 8, dtype=np.uint8)
     cut = np.zeros((n_warp, n_weft), dtype=np.bool_)
     following = np.full(len(order), -1, dtype=np.int64)
-    # no point of a cell is farther than this from one of its corners, nor than `reach` from any
+    # no point of a cell is farther than this from one of its corners
     radius = 0.5 * REACH * (warp + weft)
-    reach = REACH * (warp + weft)
-    # kept nodes by cubes of side `radius`, hashed; a chance collision only costs a look
+    # kept nodes by cubes of side `radius`
     size = 1024
     while size < 2 * len(order):
         size *= 2
@@ -167,7 +162,7 @@ def stop_where_met(mesh, net, index, position, order, warp, weft):
         normal[2] = frame[3] * frame[7] - frame[4] * frame[6]
         if not met:
             for near in range(27):
-                m = heads[_bucket(vx + near // 9 - 1, vy + near // 3 % 3 - 1, vz + near % 3 - 1, size)]
+                m = heads[cube_beside(vx, vy, vz, near, size)]
                 while m >= 0 and not met:
                     a = order[m, 0]
                     b = order[m, 1]
@@ -192,7 +187,7 @@ def stop_where_met(mesh, net, index, position, order, warp, weft):
                         ci = a - (which & 1)
                         cj = b - (which >> 1)
                         if _may_lie(position, kept, i, j, ci, cj, a, b, normal, warp, weft, to) and lies_on_cell(
-                            mesh, net, ci, cj, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], reach, corner
+                            mesh, net, ci, cj, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], warp, weft, corner
                         ):
                             met = True
                 if met:
@@ -203,7 +198,7 @@ def stop_where_met(mesh, net, index, position, order, warp, weft):
             taken += 1
             continue
         kept[i, j] = status[i, j]
-        bucket = _bucket(vx, vy, vz, size)
-        following[n] = heads[bucket]
-        heads[bucket] = n
+        here = bucket(vx, vy, vz, size)
+        following[n] = heads[here]
+        heads[here] = n
     return taken

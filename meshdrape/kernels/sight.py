@@ -24,6 +24,9 @@ FOUND_BEHIND = 0.3
 SAME_PLACE = 1e-9
 # A path in a cell is no longer than two of its sides, but where the cell is curved.
 REACH = 1.1
+# A side seen longer than this, in spacings, is seen to its left and to its right round a tube; one behind the tip of a
+# cube's corner appears to be as long.
+WIDEST = 2.0
 
 
 @kernel
@@ -56,10 +59,7 @@ def _share_vertex(mesh, f, g):
 def _joined(mesh, f, g, px, py, pz, radius):
     """Whether one can go from face f to face g, which holds the point, over faces that near to it."""
     at = np.array([px, py, pz])
-    for other in flood(mesh, f, at, at, 2.0 * radius):
-        if other == g:
-            return True
-    return False
+    return bool(np.any(flood(mesh, f, at, at, 2.0 * radius) == g))
 
 
 @kernel
@@ -134,10 +134,9 @@ def sight(mesh, face, x, y, goal, goal_x, goal_y, reach):
             lv = along * dy + across * dx
             if (beside and gap <= FOUND * length) or (gap <= SAME_PLACE * length and _share_vertex(mesh, f, goal)):
                 return along * along + across * across <= reach * reach, lu, lv
-            if not beside and aside <= 0.1 * abs(hw):
-                # right over it, or under: another sheet
-                if not _joined(mesh, f, goal, px, py, pz, 2.0 * gap):
-                    return False, lu, lv
+            # right over it, or under: another sheet
+            if not beside and aside <= 0.1 * abs(hw) and not _joined(mesh, f, goal, px, py, pz, 2.0 * gap):
+                return False, lu, lv
             if gap < nearest:
                 nearest = gap
                 near_face = f
@@ -163,18 +162,19 @@ def is_whole(status, i, j):
 
 
 @kernel
-def lies_on_cell(mesh, net, i, j, face, x, y, reach, corner):
+def lies_on_cell(mesh, net, i, j, face, x, y, warp, weft, corner):
     """Whether (x, y) in a face lies on the cell (i, j), whose four nodes are seen from there.
 
     A side between two cells appears the same for both, so a point on a sheet lies on one of its cells and no other.
 
     Parameters
     ----------
-    reach : float
-        No point of a cell is farther than this from any of its corners, mm.
+    warp, weft : float
+        Spacings, mm.
     corner : (4, 2)
         Gets where the corners (i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1) appear, in the frame of the face, mm.
     """
+    reach = REACH * (warp + weft)
     for k in range(4):
         ci = i + (1 if k == 1 or k == 2 else 0)
         cj = j + (1 if k >= 2 else 0)
@@ -187,6 +187,9 @@ def lies_on_cell(mesh, net, i, j, face, x, y, reach, corner):
     inside = False
     for k in range(4):
         m = (k + 1) % 4
+        widest = WIDEST * (warp if k % 2 == 0 else weft)
+        if (corner[m, 0] - corner[k, 0]) ** 2 + (corner[m, 1] - corner[k, 1]) ** 2 > widest * widest:
+            return False
         ya = corner[k, 1]
         yb = corner[m, 1]
         if (ya > 0.0) != (yb > 0.0):
