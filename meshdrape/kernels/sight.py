@@ -18,7 +18,7 @@ MAX_TURNS = 10
 FIRST_LOOKS = (0.0, 0.1, -0.1, 0.5, -0.5)
 # A path that ends this near to the node, in its own lengths, in its face or beside it, has found it: what is left is
 # unfolded. Behind a saddle vertex no straight path ends, and one that passes it as near as FOUND_BEHIND stands for it.
-FOUND = 1e-3
+FOUND = 1e-2
 FOUND_BEHIND = 0.3
 # Round-off of the place at which a path ends, in lengths of it.
 SAME_PLACE = 1e-9
@@ -78,8 +78,6 @@ def sight(mesh, face, x, y, goal, goal_x, goal_y, reach):
     (seen, u, v)
         Whether there is such a path; its vector in the frame of `face`, mm.
     """
-    if face == goal:
-        return True, goal_x - x, goal_y - y
     g = mesh.frame[goal]
     px = g[0] + goal_x * g[3] + goal_y * g[6]
     py = g[1] + goal_x * g[4] + goal_y * g[7]
@@ -178,11 +176,15 @@ def lies_on_cell(mesh, net, i, j, face, x, y, warp, weft, corner):
     for k in range(4):
         ci = i + (1 if k == 1 or k == 2 else 0)
         cj = j + (1 if k >= 2 else 0)
-        seen, u, v = sight(mesh, face, x, y, net.face[ci, cj], net.xy[ci, cj, 0], net.xy[ci, cj, 1], reach)
-        if not seen:
-            return False
-        corner[k, 0] = u
-        corner[k, 1] = v
+        goal = net.face[ci, cj]
+        corner[k, 0] = net.xy[ci, cj, 0] - x
+        corner[k, 1] = net.xy[ci, cj, 1] - y
+        if goal != face:
+            seen, u, v = sight(mesh, face, x, y, goal, net.xy[ci, cj, 0], net.xy[ci, cj, 1], reach)
+            if not seen:
+                return False
+            corner[k, 0] = u
+            corner[k, 1] = v
     # sides that a ray along the x axis crosses
     inside = False
     for k in range(4):
