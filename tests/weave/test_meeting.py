@@ -67,13 +67,22 @@ def test_layers_of_a_roll_do_not_meet(spacing):
     assert net.count(NodeStatus.PLACED) > 100
 
 
-def test_rows_beside_a_saddle_do_not_meet():
-    """Long cells bend over the edges of a pyramid whose corners go up and down; none comes round."""
-    azimuth, height = np.pi / 4 * np.arange(8), np.where(np.arange(8) % 2, 0.5, -0.5)
+@pytest.mark.parametrize(
+    ("corners", "steep", "seed", "direction", "spacing"),
+    [
+        (8, 0.51, (3.34, -53.6, -25.26), (-1.16, 0.83, -0.59), (35.4, 2.5)),
+        (10, 0.44, (31.94, -7.36, -4.39), (-0.13, -0.07, 0.11), (2.1, 25.1)),
+        (6, 0.86, (-25.28, -25.68, -22.49), (-0.46, 1.23, 0.96), (2.5, 24.3)),
+    ],
+)
+def test_no_rows_meet_on_a_saddle(corners, steep, seed, direction, spacing):
+    """Fibres part on a pyramid whose corners go up and down, though its long cells bend over many edges."""
+    azimuth = 2 * np.pi / corners * np.arange(corners)
+    height = np.where(np.arange(corners) % 2, steep, -steep)
     rim = np.stack([np.cos(azimuth) * np.cos(height), np.sin(azimuth) * np.cos(height), np.sin(height)], axis=1)
-    faces = np.array([[0, 1 + k, 1 + (k + 1) % 8] for k in range(8)])
+    faces = np.array([[0, 1 + k, 1 + (k + 1) % corners] for k in range(corners)])
     mould = Mesh(np.concatenate([np.zeros((1, 3)), 100 * rim]), faces).mould()
-    net = meshdrape.drape(mould, meshdrape.Fabric((20.0, 2.0)), seed=(40, 3, -15), direction=(1, 0.2, 0))
+    net = meshdrape.drape(mould, meshdrape.Fabric(spacing), seed=seed, direction=direction)
     assert net.count(NodeStatus.MET_ITSELF) == 0
 
 
