@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 
+from meshdrape.kernels.buckets import bucket, cube_beside
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT
 from meshdrape.kernels.emit import node_tangent
+from meshdrape.kernels.sight import REACH, is_whole, lies_on_cell
 
 MAX_STEPS = 80
 # Corners on a plane turned by more than this from the point's own say nothing of its fibres.
@@ -68,19 +70,6 @@ def _node(mesh, net, i, j, out):
 
 
 @kernel
-def _whole(net, i, j):
-    n_warp, n_weft = net.status.shape
-    if i < 0 or j < 0 or i >= n_warp - 1 or j >= n_weft - 1:
-        return False
-    return (
-        net.status[i, j] <= OFF_MOULD
-        and net.status[i + 1, j] <= OFF_MOULD
-        and net.status[i, j + 1] <= OFF_MOULD
-        and net.status[i + 1, j + 1] <= OFF_MOULD
-    )
-
-
-@kernel
 def _faces_alike(mesh, net, i, j, normal):
     """Whether a corner of the cell lies on a face turned to the same side as a normal."""
     for corner in range(4):
@@ -108,123 +97,220 @@ def _solve(px, py, pz, n, a, u, v):
     return rv / uv, ur / uv
 
 
-@kernel(nogil=True)
-def read_cells(mesh, net, start, warp, weft, tangent, face, point, normal, first, cell, warp_out, weft_out):
-    """Cell over each point and its fibres there.
+@kernel
+def _climb(mesh, net, i, j, px, py, pz, normal, a, u, v):
+    """From the cell (i, j) on to the one that a point seems to lie on, seen along a normal.
 
-    From a node nearby, the point's coordinates in the cell at hand tell how many cells to go: on a flat mould one
-    step is enough, elsewhere a few.
+    The point's coordinates in the cell at hand tell how many cells to go: on a flat mould one step is enough,
+    elsewhere a few. (-1, -1) where the way leaves the net. a, u, v : (3,) scratch.
+    """
+    n_warp, n_weft = net.status.shape
+    for step in range(MAX_STEPS):
+        # the edges of the cell at hand, borrowed from the cell before where it ends
+        _node(mesh, net, i, j, a)
+        if i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD:
+            _node(mesh, net, i + 1, j, u)
+            for k in range(3):
+                u[k] -= a[k]
+        elif i > 0 and net.status[i - 1, j] <= OFF_MOULD:
+            _node(mesh, net, i - 1, j, u)
+            for k in range(3):
+                u[k] = a[k] - u[k]
+        else:
+            break
+        if j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD:
+            _node(mesh, net, i, j + 1, v)
+            for k in range(3):
+                v[k] -= a[k]
+        elif j > 0 and net.status[i, j - 1] <= OFF_MOULD:
+            _node(mesh, net, i, j - 1, v)
+            for k in range(3):
+                v[k] = a[k] - v[k]
+        else:
+            break
+        alpha, beta = _solve(px, py, pz, normal, a, u, v)
+        if not (abs(alpha) < 1e6 and abs(beta) < 1e6):
+            break
+        di = math.floor(alpha)
+        dj = math.floor(beta)
+        if di == 0 and dj == 0:
+            return i, j
+        # a cell bent over a crease may send the point to its neighbour and back
+        near = 0.55 + 0.005 * step
+        if abs(alpha - 0.5) < near and abs(beta - 0.5) < near and is_whole(net.status, i, j):
+            return i, j
+        moved = False
+        for _shrink in range(12):
+            ti = i + di
+            tj = j + dj
+            if 0 <= ti < n_warp and 0 <= tj < n_weft and net.status[ti, tj] <= OFF_MOULD and (di != 0 or dj != 0):
+                i = ti
+                j = tj
+                moved = True
+                break
+            if di == 0 and dj == 0:
+                break
+            di = int(di / 2)
+            dj = int(dj / 2)
+        if not moved:
+            break
+    return -1, -1
+
+
+@kernel
+def _lies(mesh, net, i, j, face, point, normal, warp, weft, corner, share):
+    """Whether a point lies on the cell (i, j), if it is whole; `share` (2,) gets its coordinates there, 0 to 1."""
+    if not is_whole(net.status, i, j) or not _faces_alike(mesh, net, i, j, normal):
+        return False
+    f = mesh.frame[face]
+    x = 0.0
+    y = 0.0
+    for k in range(3):
+        x += (point[k] - f[k]) * f[3 + k]
+        y += (point[k] - f[k]) * f[6 + k]
+    if not lies_on_cell(mesh, net, i, j, face, x, y, warp, weft, corner):
+        return False
+    ux = corner[1, 0] - corner[0, 0]
+    uy = corner[1, 1] - corner[0, 1]
+    vx = corner[3, 0] - corner[0, 0]
+    vy = corner[3, 1] - corner[0, 1]
+    turn = ux * vy - uy * vx
+    share[0] = min(max((vx * corner[0, 1] - vy * corner[0, 0]) / turn, 0.0), 1.0)
+    share[1] = min(max((uy * corner[0, 0] - ux * corner[0, 1]) / turn, 0.0), 1.0)
+    return True
+
+
+@kernel(nogil=True)
+def climb_to_cells(mesh, net, warp, weft, face, point, normal, first, cell, share):
+    """The cell over each point, where a climb from a node nearby leads there.
 
     Parameters
     ----------
-    tangent : (2, n_warp, n_weft, 3)
-        Directions of warp and weft at the nodes, if at hand, else of length 0: they are then found as needed.
+    warp, weft : float
+        Spacings, mm.
     face : (n,) int64
         Face of the surface that holds each point; points of one face follow each other.
     point, normal : (n, 3)
     first : (m, 2)
         From `first_nodes`.
     cell : (n, 2) int64
-        Gets the cell; -1 where no whole cell lies on the point.
-    warp_out, weft_out : (n, 3)
-        Get the unit directions of the fibres, in the plane of the point's face; of length 0 where they are not wanted.
+        Gets the cell; -1 where the climb did not lead to it.
+    share : (n, 2)
+        Gets the point's coordinates in its cell, along the warp and along the weft, 0 to 1.
     """
     a = np.empty(3)
     u = np.empty(3)
     v = np.empty(3)
-    n_warp, n_weft = net.status.shape
-    last_face = -1
-    i = 0
-    j = 0
+    corner = np.empty((4, 2))
+    last = -1
     for q in range(len(face)):
-        cell[q, 0] = -1
-        cell[q, 1] = -1
+        cell[q] = -1
         f = face[q]
         if first[f, 0] < 0:
             continue
-        found = False
+        # on from the last point's cell, else from the face's own node
         for attempt in range(2):
-            if attempt == 1 or f != last_face:
-                i = first[f, 0]
-                j = first[f, 1]
-            px = point[q, 0]
-            py = point[q, 1]
-            pz = point[q, 2]
-            alpha = 0.0
-            beta = 0.0
-            for step in range(MAX_STEPS):
-                # the edges of the cell at hand, borrowed from the cell before where it ends
-                _node(mesh, net, i, j, a)
-                if i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD:
-                    _node(mesh, net, i + 1, j, u)
-                    for k in range(3):
-                        u[k] -= a[k]
-                elif i > 0 and net.status[i - 1, j] <= OFF_MOULD:
-                    _node(mesh, net, i - 1, j, u)
-                    for k in range(3):
-                        u[k] = a[k] - u[k]
-                else:
-                    break
-                if j + 1 < n_weft and net.status[i, j + 1] <= OFF_MOULD:
-                    _node(mesh, net, i, j + 1, v)
-                    for k in range(3):
-                        v[k] -= a[k]
-                elif j > 0 and net.status[i, j - 1] <= OFF_MOULD:
-                    _node(mesh, net, i, j - 1, v)
-                    for k in range(3):
-                        v[k] = a[k] - v[k]
-                else:
-                    break
-                alpha, beta = _solve(px, py, pz, normal[q], a, u, v)
-                if not (abs(alpha) < 1e6 and abs(beta) < 1e6):
-                    break
-                di = math.floor(alpha)
-                dj = math.floor(beta)
-                if di == 0 and dj == 0:
-                    found = _whole(net, i, j)
-                    break
-                # a cell bent over a crease may send the point to its neighbour and back: near enough is in, at last
-                near = 0.55 + 0.005 * step
-                if abs(alpha - 0.5) < near and abs(beta - 0.5) < near and _whole(net, i, j):
-                    found = True
-                    break
-                moved = False
-                for _shrink in range(12):
-                    ti = i + di
-                    tj = j + dj
-                    if (
-                        0 <= ti < n_warp
-                        and 0 <= tj < n_weft
-                        and net.status[ti, tj] <= OFF_MOULD
-                        and (di != 0 or dj != 0)
-                    ):
-                        i = ti
-                        j = tj
-                        moved = True
-                        break
-                    if di == 0 and dj == 0:
-                        break
-                    di = int(di / 2)
-                    dj = int(dj / 2)
-                if not moved:
-                    break
-            if found:
+            if attempt == 0 and (last < 0 or face[last] != f):
+                continue
+            i, j = (cell[last, 0], cell[last, 1]) if attempt == 0 else (first[f, 0], first[f, 1])
+            i, j = _climb(mesh, net, i, j, point[q, 0], point[q, 1], point[q, 2], normal[q], a, u, v)
+            if i >= 0 and _lies(mesh, net, i, j, f, point[q], normal[q], warp, weft, corner, share[q]):
+                cell[q, 0] = i
+                cell[q, 1] = j
+                last = q
                 break
-        last_face = f
-        if found:
-            # the far side of a closed mould lies over the same cell, seen along the normal, but not on it
-            off = abs((px - a[0]) * normal[q, 0] + (py - a[1]) * normal[q, 1] + (pz - a[2]) * normal[q, 2])
-            found = off <= max(warp, weft) and _faces_alike(mesh, net, i, j, normal[q])
-        if not found:
-            i = first[f, 0]
-            j = first[f, 1]
+
+
+@kernel(nogil=True)
+def search_cells(mesh, net, warp, weft, face, point, normal, missed, cell, share):
+    """The cell over each point that no climb led to, among all those with a corner near it: seams, rims and creases.
+
+    Parameters
+    ----------
+    missed : (k,) int64
+        The points.
+    """
+    n_warp, n_weft = net.status.shape
+    # no point of a cell is farther than this from one of its corners
+    radius = 0.5 * REACH * (warp + weft)
+    size = 1024
+    while size < 32 * len(missed):
+        size *= 2
+    wanted = np.zeros(size, dtype=np.bool_)
+    at = np.empty(3, dtype=np.int64)
+    for q in missed:
+        for k in range(3):
+            at[k] = math.floor(point[q, k] / radius)
+        for near in range(27):
+            wanted[cube_beside(at[0], at[1], at[2], near, size)] = True
+    heads = np.full(size, -1, dtype=np.int64)
+    place = np.empty(3)
+    nodes = [(0, 0, -1)][:0]
+    for i in range(n_warp):
+        for j in range(n_weft):
+            if net.status[i, j] > OFF_MOULD:
+                continue
+            _node(mesh, net, i, j, place)
+            for k in range(3):
+                at[k] = math.floor(place[k] / radius)
+            here = bucket(at[0], at[1], at[2], size)
+            if wanted[here]:
+                nodes.append((i, j, heads[here]))
+                heads[here] = len(nodes) - 1
+    corner = np.empty((4, 2))
+    told = np.empty(2)
+    for q in missed:
+        for k in range(3):
+            at[k] = math.floor(point[q, k] / radius)
+        for near in range(27):
+            n = heads[cube_beside(at[0], at[1], at[2], near, size)]
+            while n >= 0:
+                i, j, n = nodes[n]
+                if _gap2(mesh, net, i, j, point[q], place) > radius * radius:
+                    continue
+                for which in range(4):
+                    ci = i - (which & 1)
+                    cj = j - (which >> 1)
+                    # of two layers the one nearer to the lattice's first corner, whatever the order they are found in
+                    after = cell[q, 0] >= 0 and (ci, cj) >= (cell[q, 0], cell[q, 1])
+                    if not after and _lies(mesh, net, ci, cj, face[q], point[q], normal[q], warp, weft, corner, told):
+                        cell[q, 0] = ci
+                        cell[q, 1] = cj
+                        share[q] = told
+
+
+@kernel
+def _gap2(mesh, net, i, j, point, place):
+    """Square of the distance in space between a node and a point, mm2."""
+    _node(mesh, net, i, j, place)
+    gap2 = 0.0
+    for k in range(3):
+        gap2 += (place[k] - point[k]) ** 2
+    return gap2
+
+
+@kernel(nogil=True)
+def fibres_on_cells(mesh, net, start, warp, weft, tangent, normal, cell, share, warp_out, weft_out):
+    """Directions of the fibres at points of cells: the mean of those at the corners, in the plane of the point's face.
+
+    Parameters
+    ----------
+    tangent : (2, n_warp, n_weft, 3)
+        Directions of warp and weft at the nodes, if at hand, else of length 0: they are then found as needed.
+    normal : (n, 3)
+        Of the face that holds each point.
+    cell, share : (n, 2)
+        As told by `climb_to_cells`; where the cell is -1 nothing is written.
+    warp_out, weft_out : (n, 3)
+        Get unit vectors.
+    """
+    for q in range(len(cell)):
+        i = cell[q, 0]
+        j = cell[q, 1]
+        if i < 0:
             continue
-        cell[q, 0] = i
-        cell[q, 1] = j
-        if len(warp_out) == 0:
-            continue
-        alpha = min(max(alpha, 0.0), 1.0)
-        beta = min(max(beta, 0.0), 1.0)
+        alpha = share[q, 0]
+        beta = share[q, 1]
         for family in range(2):
             sx = 0.0
             sy = 0.0

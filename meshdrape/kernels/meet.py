@@ -4,12 +4,16 @@ import math
 
 import numpy as np
 
+from meshdrape.kernels.buckets import bucket, cube_beside
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD
+from meshdrape.kernels.sight import REACH, is_whole, lies_on_cell
 
 MET_ITSELF = 4
-# Sheets are told apart by how far they lie from each other across the mould, in spacings, and by their normals.
-THICKNESS = 0.25
+# A cell whose sides appear this long, in spacings, is as good as flat,
+FLAT = 0.95
+# and what appears farther beside it than this does not lie on it.
+BESIDE = 0.3
 # A single sheet's nodes on one face stay within this many face diameters, in spacings, of each other.
 WINDOW = 8.0
 
@@ -41,50 +45,67 @@ def spread_on_faces(net, window, diameter, spacing):
     return False
 
 
-@kernel(inline="always")
-def _cross2(ax, ay, bx, by):
-    return ax * by - ay * bx
-
-
 @kernel
-def _in_cell(position, status, ci, cj, face_frame, px, py, pz, thickness):
-    """Whether a point lies over the whole cell (ci, cj), seen along the normal of a frame."""
-    n_warp, n_weft = status.shape
-    if ci < 0 or cj < 0 or ci >= n_warp - 1 or cj >= n_weft - 1:
+def _may_lie(position, kept, i, j, ci, cj, a, b, normal, warp, weft, to):
+    """Whether the node (i, j) can lie on the whole cell (ci, cj), of whose corners (a, b) is the nearest.
+
+    What is told from places in space, at little cost: false only where no way along the surface is short enough, or
+    where the cell is as good as flat and the node beside it. to : (4, 3) scratch.
+    """
+    if not is_whole(kept, ci, cj):
         return False
-    x = np.empty(4)
-    y = np.empty(4)
+    nearest = 0.0
+    for k in range(3):
+        nearest += (position[a, b, k] - position[i, j, k]) ** 2
+    diagonal = 0.0
     for corner in range(4):
         # round the cell: (0, 0), (1, 0), (1, 1), (0, 1)
-        i = ci + (1 if corner == 1 or corner == 2 else 0)
-        j = cj + (1 if corner >= 2 else 0)
-        if status[i, j] > OFF_MOULD:
+        k = ci + (1 if corner == 1 or corner == 2 else 0)
+        m = cj + (1 if corner >= 2 else 0)
+        away = 0.0
+        for axis in range(3):
+            to[corner, axis] = position[k, m, axis] - position[i, j, axis]
+            away += to[corner, axis] ** 2
+        # the nearest corner answers for the cell, so that it is looked at once
+        if away < nearest:
             return False
-        rx = position[i, j, 0] - px
-        ry = position[i, j, 1] - py
-        rz = position[i, j, 2] - pz
-        x[corner] = rx * face_frame[3] + ry * face_frame[4] + rz * face_frame[5]
-        y[corner] = rx * face_frame[6] + ry * face_frame[7] + rz * face_frame[8]
-        if rx * rx + ry * ry + rz * rz - x[corner] ** 2 - y[corner] ** 2 > (4.0 * thickness) ** 2:
-            return False
-    sign = 0.0
+        if corner % 2 == 0:
+            diagonal += math.sqrt(away)
+    if diagonal > REACH * (warp + weft):
+        return False
+    # where its sides appear as long as they are on the surface, the cell is seen as it is
+    beside = False
+    turned = _triple(to[0], to[1], normal) + _triple(to[1], to[2], normal) + _triple(to[2], to[0], normal) > 0.0
     for corner in range(4):
-        after = (corner + 1) % 4
-        turn = _cross2(x[corner], y[corner], x[after], y[after])
-        if turn == 0.0 or turn * sign < 0.0:
-            return False
-        sign = turn
-    return True
+        tail = to[corner]
+        head = to[(corner + 1) % 4]
+        along = 0.0
+        size = 0.0
+        for axis in range(3):
+            side = head[axis] - tail[axis]
+            along += side * normal[axis]
+            size += side * side
+        size = math.sqrt(max(size - along * along, 0.0))
+        if size < FLAT * (warp if corner % 2 == 0 else weft):
+            return True
+        inward = _triple(tail, head, normal) / size
+        if (inward if turned else -inward) < -0.5 * BESIDE * (warp + weft):
+            beside = True
+    return not beside
 
 
 @kernel(inline="always")
-def _bucket(x, y, z, size):
-    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) & (size - 1)
+def _triple(u, v, n):
+    """The volume u x v . n."""
+    return n[0] * (u[1] * v[2] - u[2] * v[1]) + n[1] * (u[2] * v[0] - u[0] * v[2]) + n[2] * (u[0] * v[1] - u[1] * v[0])
 
 
 @kernel
-def stop_where_met(mesh, net, index, position, order, radius):
+def stop_where_met(mesh, net, index, position, order, warp, weft):
     """Take back, in a fixed order, each node that lies on a cell kept before it, and what depends on it.
+
+    A node lies on a cell if the surface leads from one to the other, not if it is near to it in space: the layers of a
+    roll are nearer to each other than the nodes of one.
 
     Parameters
     ----------
@@ -92,8 +113,8 @@ def stop_where_met(mesh, net, index, position, order, radius):
     position : (n_warp, n_weft, 3) mm
     order : (n, 2) int64
         Nodes to go through, nearer to the seed first.
-    radius : float
-        No point of a cell is farther than this from one of its corners, mm.
+    warp, weft : float
+        Spacings, mm.
 
     Returns
     -------
@@ -105,13 +126,17 @@ def stop_where_met(mesh, net, index, position, order, radius):
     kept = np.full((n_warp, n_weft), 8, dtype=np.uint8)
     cut = np.zeros((n_warp, n_weft), dtype=np.bool_)
     following = np.full(len(order), -1, dtype=np.int64)
-    # kept nodes by cubes of side `radius`, hashed; a chance collision only costs a look
+    # no point of a cell is farther than this from one of its corners
+    radius = 0.5 * REACH * (warp + weft)
+    # kept nodes by cubes of side `radius`
     size = 1024
     while size < 2 * len(order):
         size *= 2
     heads = np.full(size, -1, dtype=np.int64)
     taken = 0
-    thickness = THICKNESS * radius
+    normal = np.empty(3)
+    corner = np.empty((4, 2))
+    to = np.empty((4, 3))
     for n in range(len(order)):
         i = order[n, 0]
         j = order[n, 1]
@@ -132,33 +157,39 @@ def stop_where_met(mesh, net, index, position, order, radius):
         vy = np.int64(math.floor(py / radius))
         vz = np.int64(math.floor(pz / radius))
         frame = mesh.frame[net.face[i, j]]
-        nx = frame[4] * frame[8] - frame[5] * frame[7]
-        ny = frame[5] * frame[6] - frame[3] * frame[8]
-        nz = frame[3] * frame[7] - frame[4] * frame[6]
+        normal[0] = frame[4] * frame[8] - frame[5] * frame[7]
+        normal[1] = frame[5] * frame[6] - frame[3] * frame[8]
+        normal[2] = frame[3] * frame[7] - frame[4] * frame[6]
         if not met:
             for near in range(27):
-                m = heads[_bucket(vx + near // 9 - 1, vy + near // 3 % 3 - 1, vz + near % 3 - 1, size)]
+                m = heads[cube_beside(vx, vy, vz, near, size)]
                 while m >= 0 and not met:
                     a = order[m, 0]
                     b = order[m, 1]
-                    if abs(a - i) > 2 or abs(b - j) > 2:
-                        dx = position[a, b, 0] - px
-                        dy = position[a, b, 1] - py
-                        dz = position[a, b, 2] - pz
-                        off = abs(dx * nx + dy * ny + dz * nz)
-                        g = mesh.frame[net.face[a, b]]
-                        facing = (
-                            nx * (g[4] * g[8] - g[5] * g[7])
-                            + ny * (g[5] * g[6] - g[3] * g[8])
-                            + nz * (g[3] * g[7] - g[4] * g[6])
-                        )
-                        if off < thickness and facing > 0.5 and dx * dx + dy * dy + dz * dz <= radius * radius:
-                            for corner in range(4):
-                                ci = a - (corner & 1)
-                                cj = b - (corner >> 1)
-                                if _in_cell(position, kept, ci, cj, frame, px, py, pz, thickness):
-                                    met = True
                     m = following[m]
+                    if abs(a - i) <= 2 and abs(b - j) <= 2:
+                        continue
+                    dx = position[a, b, 0] - px
+                    dy = position[a, b, 1] - py
+                    dz = position[a, b, 2] - pz
+                    if dx * dx + dy * dy + dz * dz > radius * radius:
+                        continue
+                    # the other side of a thin mould
+                    g = mesh.frame[net.face[a, b]]
+                    facing = (
+                        normal[0] * (g[4] * g[8] - g[5] * g[7])
+                        + normal[1] * (g[5] * g[6] - g[3] * g[8])
+                        + normal[2] * (g[3] * g[7] - g[4] * g[6])
+                    )
+                    if facing <= 0.0:
+                        continue
+                    for which in range(4):
+                        ci = a - (which & 1)
+                        cj = b - (which >> 1)
+                        if _may_lie(position, kept, i, j, ci, cj, a, b, normal, warp, weft, to) and lies_on_cell(
+                            mesh, net, ci, cj, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], warp, weft, corner
+                        ):
+                            met = True
                 if met:
                     break
         if met:
@@ -167,7 +198,7 @@ def stop_where_met(mesh, net, index, position, order, radius):
             taken += 1
             continue
         kept[i, j] = status[i, j]
-        bucket = _bucket(vx, vy, vz, size)
-        following[n] = heads[bucket]
-        heads[bucket] = n
+        here = bucket(vx, vy, vz, size)
+        following[n] = heads[here]
+        heads[here] = n
     return taken

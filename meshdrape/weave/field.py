@@ -94,7 +94,7 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
     face[net.surface_face] = np.arange(len(net.surface_face))
     draped = np.flatnonzero(face[parent] >= 0)
     n = len(draped)
-    cell = np.full((n, 2), -1)
+    cell, share = np.full((n, 2), -1), np.empty((n, 2))
     warp, weft = np.empty((n, 3)), np.empty((n, 3))
     first = np.empty((len(net.surface_face), 2), dtype=np.int64)
     locate.first_nodes(mesh, net.lattice, first)
@@ -102,17 +102,26 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
     # a net with fewer nodes than points gives its tangents once, a larger one only where they are asked for
     few = net.shape[0] * net.shape[1] <= 2 * n
     tangent = np.stack(net.directions(0, net.shape[0])) if few else np.empty((2, 0, 0, 3))
+    spacings = (fabric.warp_spacing, fabric.weft_spacing)
     # blocks of a fixed size: where one begins a search starts anew, which must not depend on the threads
     step = 8192
+    blocks = [slice(k, k + step) for k in range(0, n, step)]
     run_kernel(
-        locate.read_cells,
+        locate.climb_to_cells,
+        [(mesh, net.lattice, *spacings, at[k], centre[k], up[k], first, cell[k], share[k]) for k in blocks],
+        net.threads,
+    )
+    missed = np.flatnonzero((cell[:, 0] < 0) & (first[at, 0] >= 0))
+    if len(missed):
+        locate.search_cells(mesh, net.lattice, *spacings, at, centre, up, missed, cell, share)
+    run_kernel(
+        locate.fibres_on_cells,
         [
-            (mesh, net.lattice, net.start, fabric.warp_spacing, fabric.weft_spacing, tangent, at[k : k + step],
-             centre[k : k + step], up[k : k + step], first, cell[k : k + step], warp[k : k + step], weft[k : k + step])
-            for k in range(0, n, step)
+            (mesh, net.lattice, net.start, *spacings, tangent, up[k], cell[k], share[k], warp[k], weft[k])
+            for k in blocks
         ],
         net.threads,
-    )  # fmt: skip
+    )
     on = cell[:, 0] >= 0
     covered = np.zeros(len(triangles), dtype=np.bool_)
     covered[draped] = on

@@ -13,8 +13,10 @@ from meshdrape.weave.status import NodeStatus
 # A quadrant folds once it encloses pi / 2 of curvature. A disk with less than this in all, rad, cannot bring a sheet
 # round on itself.
 HARMLESS_CURVATURE = np.pi
-# On faces below this many spacings across, far-apart indices on one face are proof either way,
+# On faces below this many spacings across, but not below this share of a cell, where two layers would hardly ever have
+# nodes on one face, far-apart indices on one face are proof either way,
 SMALL_FACE = 4.0
+SMALLEST_FACE = 0.1
 # and worth looking for in a net of more than this many nodes.
 LARGE_NET = 30_000
 
@@ -37,7 +39,9 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     mesh = surface.unfolding
     spacing = fabric.shortest
     diameter = surface.face_diameter
-    small = float(diameter[: len(mould.faces)].max()) < SMALL_FACE * spacing
+    cell = fabric.warp_spacing * fabric.weft_spacing
+    largest = float(diameter[: len(mould.faces)].max())
+    small = largest < SMALL_FACE * spacing and float(np.median(mould.face_area)) > SMALLEST_FACE * cell
     window = np.empty((len(diameter), 4), dtype=np.int64)
     # collar faces reach far out; on them windows say nothing
     measured = np.where(np.arange(len(diameter)) < len(mould.faces), diameter, np.inf)
@@ -54,8 +58,8 @@ def end_where_met(mould: Surface, surface: Surface, fabric: Fabric, lattice: Lat
     position = np.full((*lattice.status.shape, 3), np.nan)
     frame = mesh.frame[lattice.face[i, j]]
     position[i, j] = frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
-    radius = fabric.longest
-    return int(stop_where_met(mesh, lattice, start.origin, position, order, radius))
+    spacings = (fabric.warp_spacing, fabric.weft_spacing)
+    return int(stop_where_met(mesh, lattice, start.origin, position, order, *spacings))
 
 
 def _cannot_meet(mould: Surface) -> bool:
