@@ -159,3 +159,7 @@ def test_a_single_ribbon_has_both_directions(extent):
     assert np.einsum("ijk,ijk->ij", crossed, normal) == pytest.approx(np.sin(initial), abs=1e-9)
     cosine = np.einsum("ijk,ijk->ij", net.warp_direction, net.weft_direction)
     assert cosine == pytest.approx(np.cos(initial), abs=1e-9)
+    # and it takes its length of cloth, without a cell
+    measures = meshdrape.measure(net)
+    assert measures.n_cells == 0
+    assert measures.cloth == (6.0 * (net.shape[0] - 1), 6.0 * (net.shape[1] - 1), 0.0)
