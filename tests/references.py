@@ -59,6 +59,55 @@ def sphere_net(radius: float, spacing: float, n: int) -> FloatArray:
     return radius * node
 
 
+def sphere_net_of(
+    radius: float, spacing: tuple[float, float], initial_angle: float, extent: float
+) -> dict[tuple[int, int], FloatArray]:
+    """Exact discrete net of any fabric on a sphere about the origin, all four quadrants: nodes (3,) by (i, j).
+
+    Seed at (0, 0, radius), warp towards +x, weft at the initial angle counter-clockwise; spacing along warp and weft.
+    The lattice goes to `extent` along both; a node is missing where the net has folded.
+    """
+    node: dict[tuple[int, int], FloatArray] = {}
+    for at, step, azimuth in ((0, spacing[0], 0.0), (1, spacing[1], initial_angle)):
+        for k in range(-int(extent / step), int(extent / step) + 1):
+            turn = k * step / radius
+            place = [np.sin(turn) * np.cos(azimuth), np.sin(turn) * np.sin(azimuth), np.cos(turn)]
+            node[(k, 0) if at == 0 else (0, k)] = np.array(place)
+    cosine = np.cos(np.array(spacing) / radius)
+    for si in (1, -1):
+        for sj in (1, -1):
+            for i in range(1, int(extent / spacing[0]) + 1):
+                for j in range(1, int(extent / spacing[1]) + 1):
+                    a, b, known = (node.get((si * p, sj * q)) for p, q in ((i - 1, j), (i, j - 1), (i - 1, j - 1)))
+                    if a is None or b is None or known is None:
+                        continue
+                    across = np.cross(a, b)
+                    share = np.linalg.solve([[1.0, a @ b], [a @ b, 1.0]], cosine)
+                    middle = share[0] * a + share[1] * b
+                    height2 = (1 - middle @ middle) / (across @ across)
+                    if height2 > 0:
+                        # the known corner is the other intersection of the two circles
+                        side = np.sign(across @ known)
+                        node[si * i, sj * j] = middle - side * np.sqrt(height2) * across
+    return {at: radius * place for at, place in node.items()}
+
+
+def sphere_cell_shear(node: dict[tuple[int, int], FloatArray], initial_angle: float) -> dict[tuple[int, int], float]:
+    """Signed shear of every whole cell of a net on a sphere: initial angle less the mean of the four corners, rad."""
+    shear = {}
+    for i, j in node:
+        ring = [node.get(at) for at in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))]
+        if any(place is None for place in ring):
+            continue
+        angles = []
+        for k in range(4):
+            normal = ring[k] / np.linalg.norm(ring[k])
+            u, v = (other - (other @ normal) * normal for other in (ring[(k + 1) % 4], ring[k - 1]))
+            angles.append(np.arctan2(np.cross(u, v) @ normal, u @ v))
+        shear[i, j] = float(initial_angle - (angles[0] + angles[2] + 2 * np.pi - angles[1] - angles[3]) / 4)
+    return shear
+
+
 # --- any graph surface ----------------------------------------------------------------------------------------------
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from meshdrape.errors import MouldError, StartError
@@ -27,6 +28,8 @@ LOWEST_ORDER, HIGHEST_ORDER, SUREST_ORDER = 0.4, 2.2, 1.0
 # Safety factor of a bar from three grids of believable order; of the spread where the order is not.
 # (Roache, Perspective: A method for uniform reporting of grid refinement studies, J. Fluids Eng. 116, 1994.)
 SAFETY, SPREAD_SAFETY = 1.25, 1.5
+# Two and a half standard deviations, from a median of absolute values: no luck of two maxima makes a bar smaller.
+LEAST_SIGMA = 2.5 * 1.4826
 # Coarsest facets, rad.
 COARSEST = math.radians(60.0)
 # Angles between directions carried along a net err by this, rad: the least a bar can be.
@@ -122,7 +125,8 @@ def refine(
     Where the three maxima fall monotonically with a believable order p, the error of the finest is that of Richardson's
     extrapolation, |f3 - f2| / (2^p - 1) with p at most 1, times 1.25; elsewhere one and a half times their spread. The
     maximum wanders from cell to cell and facets err at random, so two maxima may agree by chance: the bar is never
-    below the mesh's own noise.
+    below the mesh's own noise, nor below two and a half standard deviations of the change from one tessellation to the
+    next in the cells that shear at least half as much, the first change taken by half.
     """
     if net is None:
         require_refinable(mould)
@@ -147,7 +151,9 @@ def refine(
         # the very same start, on the coarser facets
         at = coarse.surface.closest_point(net.seed)[0].position(coarse.surface)
         nets.insert(0, _laid_alike(net, coarse, fabric, at, threads))
-    maxima = [_max_shear(measure(each)) for each in nets]
+    taken = [measure(each) for each in nets]
+    maxima = [_max_shear(each) for each in taken]
+    change = max(change_of_cells(taken[1], taken[2]), change_of_cells(taken[0], taken[1]) / RATIO)
     noise = mesh_noise(net.surface.mould_part)
     order, error = extrapolated(*maxima)
     twice = Fabric((2 * fabric.warp_spacing, 2 * fabric.weft_spacing), fabric.initial_angle, fabric.locking_angle)
@@ -160,9 +166,25 @@ def refine(
         max_shear=_three(maxima),
         order=order,
         noise=noise,
-        error_bar=max(error, noise, ROUND_OFF),
+        error_bar=max(error, noise, LEAST_SIGMA * change, ROUND_OFF),
         spacing_error=SAFETY * abs(_max_shear(measure(wide)) - maxima[-1]),
     )
+
+
+def change_of_cells(middle: Measures, fine: Measures) -> float:
+    """Median absolute change from one net to another of the cells that shear at least half the largest, rad.
+
+    The nets have one start and one fabric, so a cell is the same in both by its place from the seed.
+    """
+    if not fine.n_cells:
+        return 0.0
+    i, j = np.nonzero(fine.cell_touches_mould & (np.abs(fine.cell_shear) >= 0.5 * fine.max_shear))
+    at = np.stack([i, j]) + np.subtract(middle.net.seed_index, fine.net.seed_index)[:, None]
+    inside = ((at >= 0) & (at < np.reshape(middle.cell_shear.shape, (2, 1)))).all(axis=0)
+    i, j, at = i[inside], j[inside], at[:, inside]
+    both = middle.cell_touches_mould[at[0], at[1]]
+    change = fine.cell_shear[i[both], j[both]] - middle.cell_shear[at[0, both], at[1, both]]
+    return float(np.median(np.abs(change))) if len(change) else 0.0
 
 
 def _laid_alike(net: Net, mould: Mould, fabric: Fabric, seed: ArrayLike, threads: int | None) -> Net:

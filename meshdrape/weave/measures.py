@@ -86,12 +86,14 @@ class Measures:
     def cloth(self) -> tuple[float, float, float]:
         """Cloth needed: length along the warp and along the weft, mm, and area of the cells that touch the mould, mm2.
 
-        The lengths bound the net in the flat sheet; the area is that of the undeformed cells.
+        The lengths bound the net in the flat sheet; the area is that of the undeformed cells. A single ribbon has
+        nodes and no cells: its length counts.
         """
         fabric = self.net.fabric
         rows, columns = (np.flatnonzero(self.cell_touches_mould.any(axis=k)) for k in (1, 0))
         if not len(rows):
-            return 0.0, 0.0, 0.0
+            i, j = np.nonzero(self.net.node_status == NodeStatus.PLACED)
+            return float(np.ptp(i)) * fabric.warp_spacing, float(np.ptp(j)) * fabric.weft_spacing, 0.0
         cell = fabric.warp_spacing * fabric.weft_spacing * float(np.sin(fabric.initial_angle))
         return (
             float(rows[-1] - rows[0] + 1) * fabric.warp_spacing,

@@ -143,7 +143,8 @@ class Net:
     def directions(self, first: int, last: int) -> tuple[FloatArray, FloatArray]:
         """Unit tangents of warp and weft at the nodes of the rows first <= i < last, each (last - first, n_weft, 3).
 
-        The mean of the edges on both sides of the node: second order in the spacing.
+        The mean of the edges on both sides of the node: second order in the spacing. A fibre without an edge at the
+        node, of a single ribbon say, lies at the initial angle to the other, as one that nothing crosses leaves it.
         """
         warp = np.empty((last - first, self.shape[1], 3))
         weft = np.empty_like(warp)
@@ -153,7 +154,20 @@ class Net:
             for a, b in self.row_blocks(first, last)
         ]  # fmt: skip
         self.in_threads(emit.directions, tasks)
+        self._complete_directions(first, warp, weft)
         return warp, weft
+
+    def _complete_directions(self, first: int, warp: FloatArray, weft: FloatArray) -> None:
+        """Give the fibres that have no edge at a node a direction, in place."""
+        placed = self.lattice.status[first : first + len(warp)] <= NodeStatus.OFF_MOULD
+        for missing, other, angle in (
+            (warp, weft, -self.fabric.initial_angle),
+            (weft, warp, self.fabric.initial_angle),
+        ):
+            i, j = np.nonzero(placed & np.isnan(missing[..., 0]) & ~np.isnan(other[..., 0]))
+            normal = self.surface.face_normal[self.lattice.face[first + i, j]]
+            along = other[i, j]
+            missing[i, j] = np.cos(angle) * along + np.sin(angle) * np.cross(normal, along)
 
     def row_blocks(self, first: int, last: int) -> Iterator[tuple[int, int]]:
         """Pieces (a, b) of the rows first <= i < last, small enough to balance over the threads."""
