@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import DesignError
-from meshdrape.theory.quadrature import FloatArray, Primitive, largest, running_integral
+from meshdrape.theory.quadrature import FloatArray, Primitive, distinct, largest, running_integral
 
 Function = Callable[[FloatArray], FloatArray]
 
@@ -81,7 +81,7 @@ class Profile:
         from scipy.interpolate import CubicHermiteSpline
 
         fine = np.linspace(0.0, self.span, 4097)
-        y = np.unique(np.concatenate([[-self.span], fine, self.breaks, [2 * self.span]]))
+        y = distinct(-self.span, fine, self.breaks, 2 * self.span)
         return CubicHermiteSpline(running_integral(self.stretch, y), y, 1 / self.stretch(y))
 
     def arc_length(self, y: ArrayLike) -> FloatArray:
