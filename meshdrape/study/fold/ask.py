@@ -12,7 +12,7 @@ from meshdrape.study.fold.design import Design
 from meshdrape.study.fold.frame import Cloth, frame_of
 from meshdrape.study.fold.lay import FoldDrape, lay
 from meshdrape.study.fold.limits import limits
-from meshdrape.study.fold.mould import cad_mould
+from meshdrape.study.fold.mould import cad_mould, ruled_mould
 from meshdrape.study.fold.nearest import nearest_spar
 from meshdrape.study.fold.notices import notices
 from meshdrape.study.fold.ways import ways
@@ -24,11 +24,19 @@ Step = Callable[[int], None]
 
 
 def drape_design(design: Design) -> FoldDrape:
-    """The full drape of a design on its CAD mould, from a row that stays on the side laid first."""
+    """The full drape of a design on its CAD mould, from a row that stays on the side laid first.
+
+    Where the cloth ends too early there, the facets of a tessellation being at fault for a row that runs along the
+    very crease, the same surfaces are draped on facets along their rulings.
+    """
     frame = frame_of(design)
     gamma = frame.gamma(design.gamma)
     cloth = Cloth.of(frame, design.spacing, design.row_offset, gamma)
-    return lay(cloth, cad_mould(design, frame, cloth), gamma, design.locking_angle)
+    drape = lay(cloth, cad_mould(design, frame, cloth), gamma, design.locking_angle)
+    if not drape.lost:
+        return drape
+    ruled = lay(cloth, ruled_mould(frame, cloth), gamma, design.locking_angle)
+    return ruled if ruled.lost < drape.lost else drape
 
 
 def fold_answer(
