@@ -94,7 +94,7 @@ def test_cloth_that_ends_has_folded():
 def test_a_row_along_the_very_crease():
     """A flat wing laid second, with a row at the corner: the row is the crease, and no node of it is lost."""
     spar = {"deviation": "sine", "c": -0.7, "wavelength": 27.0}
-    sizes = {**REAL, "spacing": 0.1, "chord": 2.0, "spar_height": 1.5, "row_offset": 0.0}
+    sizes = {**REAL, "spacing": 0.25, "chord": 2.0, "spar_height": 1.5, "row_offset": 0.0}
     of = design(sizes, wing={"profile": "flat"}, spar=spar, start={"first": "spar"})
     drape = drape_design(of)
     assert drape.lost == 0
