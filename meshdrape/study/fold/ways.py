@@ -33,7 +33,7 @@ def ways(design: Design) -> Laying:
     def rank(choice: Choice) -> tuple[bool, bool, float, float]:
         cost, both = choice.largest, (choice.shear.wing_fed or 0.0) + (choice.shear.ribbon_fed or 0.0)
         kept = cost <= design.locking_angle
-        return not kept, not choice.well_posed, *(round(math.degrees(angle), 2) for angle in (cost, both))
+        return not kept, not choice.well_posed, round(math.degrees(cost), 2), round(math.degrees(both), 2)
 
     choices.sort(key=rank)
     proven: set[Choice] = set()
