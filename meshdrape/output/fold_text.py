@@ -84,11 +84,10 @@ def _pair(pair: Pair | None) -> str:
 def _laying(answer: FoldAnswer) -> list[str]:
     laying, locking = answer.laying, answer.verdict.locking_angle
     best, own = laying.best, answer.design
-    lines = [
-        f"lay it   first on the {best.first}, from the {best.end}, gamma = {_deg(best.gamma)}: {_cost(best, locking)}"
-    ]
+    says = f"first on the {best.first}, from the {best.end}, gamma = {_deg(best.gamma)}: {_cost(best, locking)}"
     if not answer.verdict.feasible and best.largest <= locking and (best.first, best.end) != (own.first, own.end):
-        lines.append("         so it can be made, though not as laid in the design")
+        says += "; so it can be made, though not as laid in the design"
+    lines = textwrap.wrap(says, WIDTH, initial_indent="lay it   ", subsequent_indent=" " * 9)
     head = f"         {'first':7}{'from':6}{'ribbon':9}{'gamma':>8}{'wing-fed':>10}{'ribbon-fed':>12}"
     lines.append(f"{head}   deg, by characteristics")
     return lines + [_choice(choice) for choice in laying.choices]
