@@ -188,7 +188,8 @@ def _laying(answer: FoldAnswer) -> str:
     text = (
         f"<p>Cheapest: on the <b>{best.first}</b> first, from the <b>{best.end}</b>, left-most ribbon "
         f"{RULES.get(best.rule, best.rule)} (γ = {_deg(best.gamma)}): <b>{_deg(best.largest)}</b>{within}{cost}. For "
-        f"the design's own start the best γ is {_deg(laying.gamma_best)}. All by the characteristic net.</p>"
+        f"the design's own start the best γ is {_deg(laying.gamma_best)}. "
+        "By the characteristic net; of ill-posed ways the best is draped.</p>"
     )
     asked = [c for c in laying.choices if (c.first, c.end, c.rule) == (design.first, design.end, design.rule)]
     shown = list(laying.choices[:_MOST_CHOICES])
