@@ -14,7 +14,7 @@ from meshdrape.output.files import atomic_write, check_target
 from meshdrape.output.fold_charts import RULES, pictures
 
 if TYPE_CHECKING:
-    from meshdrape.study.fold import Choice, Design, FoldAnswer, FoldWarning, Limit, NearestSpar, Verdict
+    from meshdrape.study.fold import Choice, Design, FoldAnswer, FoldWarning, Limit, NearestSpar, Verdict, Where
 
 _CRITERIA: Final = {
     "eq20": "Report (20), arctan max |f′|",
@@ -82,7 +82,7 @@ def fold_page(answer: FoldAnswer) -> str:
         f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head><body>',
         f"<h1>{title}</h1>",
         f'<p class="sub">{_design(answer.design)}</p>',
-        _verdict(answer.verdict),
+        _verdict(answer),
         *_warnings(answer.warnings),
         "<h2>Criteria side by side</h2>",
         _criteria(answer.verdict),
@@ -91,6 +91,7 @@ def fold_page(answer: FoldAnswer) -> str:
             drawn["along"],
             "Circles: turns of the row and of the column of the drape's largest shear, where they cross the crease.",
         ),
+        _pairs(answer.where),
         _figure(
             drawn["spar"],
             "Colours of shear, anchored at the locking angle; circles: the largest shear of either region.",
@@ -121,24 +122,47 @@ def _design(design: Design) -> str:
     rule = RULES.get(design.rule, design.rule)
     return escape(
         f"span {design.span / metre:g} m, chord {design.chord / metre:g} m, spar {design.spar_height / metre:g} m; "
-        f"wing {design.wing.name}, {shape} in mm; spacing {design.spacing:g} mm, locking at "
+        f"wing {design.wing.name}, {shape}, lengths in mm; spacing {design.spacing:g} mm, locking at "
         f"{degrees(design.locking_angle):g}°; laid on the {design.first} first from the {design.end}, left-most ribbon "
         f"{rule}"
     )
 
 
-def _verdict(verdict: Verdict) -> str:
+def _verdict(answer: FoldAnswer) -> str:
+    verdict, best = answer.verdict, answer.laying.best
     largest, lock = verdict.criteria["drape"].largest, verdict.locking_angle
     kind, words = ("yes", "Can be made") if verdict.feasible else ("no", "Cannot be made as it is")
     side = "below" if verdict.margin >= 0 else "past"
     more = ""
     if degrees(verdict.first_sheet) > 0.01:
         more = f" The sheet laid first shears by {_deg(verdict.first_sheet)}."
+    if not verdict.feasible and best.largest <= lock:
+        more += (
+            f" Laid on the {best.first} first, from the {best.end}, it takes {_deg(best.largest)}: see How to lay it."
+        )
     return (
         f'<div class="verdict {kind}"><strong>{words}: {_deg(abs(verdict.margin))} {side} locking</strong>'
         f"Largest shear of the drape {_deg(largest)}, locking at {_deg(lock)}; left-most ribbon at "
         f"γ = {_deg(verdict.gamma)}.{more}</div>"
     )
+
+
+def _pairs(where: Where) -> str:
+    """The stations that set the largest shear of either region."""
+    said = []
+    for pair, fed, row in (
+        (where.worst_wing_fed, "Rows from the first sheet", "the row that crosses"),
+        (where.worst_ribbon_fed, "Rows from the left ribbon", "that ribbon"),
+    ):
+        if pair is None:
+            continue
+        x, y, z = (f"{value / 1000:.2f}" for value in pair.place)
+        crossing = f"{row} at y = {pair.y_row / 1000:.2f} m" if pair is where.worst_wing_fed else row
+        said.append(
+            f"{fed}: <b>{_deg(abs(pair.shear))}</b> at ({x}, {y}, {z}) m, where {crossing} meets the column that "
+            f"crosses at y = {pair.y_column / 1000:.2f} m."
+        )
+    return f"<p>{'<br>'.join(said)}</p>" if said else ""
 
 
 def _criteria(verdict: Verdict) -> str:
@@ -153,24 +177,34 @@ def _criteria(verdict: Verdict) -> str:
 
 def _laying(answer: FoldAnswer) -> str:
     laying, locking = answer.laying, answer.verdict.locking_angle
-    best = laying.best
+    best, design = laying.best, answer.design
+    within = "" if best.largest <= locking else ", still past locking"
+    cost = (
+        ""
+        if best.well_posed
+        else f"; rows come back to the {best.first}, which shears by up to {_deg(best.returning)} and cannot be laid "
+        "undeformed (ill-posed)"
+    )
     text = (
         f"<p>Cheapest: on the <b>{best.first}</b> first, from the <b>{best.end}</b>, left-most ribbon "
-        f"{RULES.get(best.rule, best.rule)} (γ = {_deg(best.gamma)}): <b>{_deg(best.largest)}</b>. For the "
-        "design's own "
-        f"start the best γ is {_deg(laying.gamma_best)}.</p>"
+        f"{RULES.get(best.rule, best.rule)} (γ = {_deg(best.gamma)}): <b>{_deg(best.largest)}</b>{within}{cost}. For "
+        f"the design's own start the best γ is {_deg(laying.gamma_best)}. "
+        "By the characteristic net; of ill-posed ways the best is draped.</p>"
     )
+    asked = [c for c in laying.choices if (c.first, c.end, c.rule) == (design.first, design.end, design.rule)]
     shown = list(laying.choices[:_MOST_CHOICES])
-    rows = [_choice(choice, choice == best, locking) for choice in shown]
-    head = ("first", "from", "left-most ribbon", "γ", *_REGIONS, "rows that<br>come back")
+    shown += [choice for choice in asked if choice not in shown]
+    rows = [_choice(choice, choice == best, choice in asked, locking) for choice in shown]
+    head = ("first", "from", "left-most ribbon", "γ", *_REGIONS, "rows that<br>come back", "")
     return text + _table(head, rows, numeric=(3, 4, 5, 6))
 
 
-def _choice(choice: Choice, best: bool, locking: float) -> str:
+def _choice(choice: Choice, best: bool, asked: bool, locking: float) -> str:
     words = (choice.first, choice.end, RULES.get(choice.rule, choice.rule))
     cells = "".join(f"<td>{escape(word)}</td>" for word in words) + f'<td class="n">{_deg(choice.gamma)}</td>'
     for value in (choice.shear.wing_fed, choice.shear.ribbon_fed, None if choice.well_posed else choice.returning):
         cells += _angle_cell(value, locking)
+    cells += f"<td>{'as designed' if asked else ''}</td>"
     return f"<tr{' class=chosen' if best else ''}>{cells}</tr>"
 
 

@@ -82,13 +82,26 @@ def _pair(pair: Pair | None) -> str:
 
 
 def _laying(answer: FoldAnswer) -> list[str]:
-    laying = answer.laying
-    lines = [
-        f"lay it   first on the {laying.best.first}, from the {laying.best.end}, gamma = {_deg(laying.best.gamma)}"
-        + ("" if laying.best.well_posed else " (ill-posed like every other way)"),
-        f"         {'first':7}{'from':6}{'ribbon':9}{'gamma':>8}{'wing-fed':>10}{'ribbon-fed':>12}   deg",
-    ]
+    laying, locking = answer.laying, answer.verdict.locking_angle
+    best, own = laying.best, answer.design
+    says = f"first on the {best.first}, from the {best.end}, gamma = {_deg(best.gamma)}: {_cost(best, locking)}"
+    if not answer.verdict.feasible and best.largest <= locking and (best.first, best.end) != (own.first, own.end):
+        says += "; so it can be made, though not as laid in the design"
+    lines = textwrap.wrap(says, WIDTH, initial_indent="lay it   ", subsequent_indent=" " * 9)
+    head = f"         {'first':7}{'from':6}{'ribbon':9}{'gamma':>8}{'wing-fed':>10}{'ribbon-fed':>12}"
+    lines.append(f"{head}   deg, by characteristics")
     return lines + [_choice(choice) for choice in laying.choices]
+
+
+def _cost(choice: Choice, locking: float) -> str:
+    """What a way to lay the sheet takes, in words."""
+    cost = f"{_deg(choice.largest)}, "
+    cost += (
+        f"{math.degrees(abs(locking - choice.largest)):.2f} {'to spare' if choice.largest <= locking else 'too much'}"
+    )
+    if choice.well_posed:
+        return cost
+    return f"{cost}; ill-posed, rows come back to the {choice.first}, which shears by up to {_deg(choice.returning)}"
 
 
 def _choice(choice: Choice) -> str:

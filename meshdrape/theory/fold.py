@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import DesignError
 from meshdrape.theory.profiles import Profile
-from meshdrape.theory.quadrature import FloatArray, Primitive, running_integral
+from meshdrape.theory.quadrature import FloatArray, Primitive, distinct, running_integral
 
 ComplexArray = NDArray[np.complex128]
 
@@ -130,7 +130,7 @@ class Fold:
         from scipy.interpolate import CubicHermiteSpline
 
         fine = np.linspace(0.0, self.span, 2049)
-        y = np.unique(np.concatenate([[-self.span], fine, self.wing.breaks, self.spar.breaks, [2 * self.span]]))
+        y = distinct(-self.span, fine, self.wing.breaks, self.spar.breaks, 2 * self.span)
         rate = self.drift_rate(y)
         height = CubicHermiteSpline(
             running_integral(self.spar.stretch, y), self.wing(y), self.wing.slope(y) / self.spar.stretch(y)

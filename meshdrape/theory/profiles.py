@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import DesignError
-from meshdrape.theory.quadrature import FloatArray, Primitive, largest, running_integral
+from meshdrape.theory.quadrature import FloatArray, Primitive, distinct, largest, running_integral
 
 Function = Callable[[FloatArray], FloatArray]
 
@@ -81,7 +81,7 @@ class Profile:
         from scipy.interpolate import CubicHermiteSpline
 
         fine = np.linspace(0.0, self.span, 4097)
-        y = np.unique(np.concatenate([[-self.span], fine, self.breaks, [2 * self.span]]))
+        y = distinct(-self.span, fine, self.breaks, 2 * self.span)
         return CubicHermiteSpline(running_integral(self.stretch, y), y, 1 / self.stretch(y))
 
     def arc_length(self, y: ArrayLike) -> FloatArray:
@@ -207,16 +207,21 @@ def table(y: ArrayLike, g: ArrayLike, span: float | None = None) -> Profile:
     span : float, optional
         The last y unless given.
     """
+    return _spline("g", y, g, span)
+
+
+def _spline(column: str, y: ArrayLike, values: ArrayLike, span: float | None) -> Profile:
+    """The spline of a table whose second column goes by a name."""
     from scipy.interpolate import CubicSpline
 
-    y, g = np.asarray(y, dtype=np.float64), np.asarray(g, dtype=np.float64)
+    y, g = np.asarray(y, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if y.ndim != 1 or y.shape != g.shape or len(y) < 4:
-        msg = f"a table needs two equal lists of at least 4 numbers; got y of shape {y.shape} and g of shape {g.shape}"
+        msg = f"a table needs two equal lists of at least 4 numbers; got {y.size} for y and {g.size} for {column}"
         raise DesignError(msg)
-    for name, column in (("y", y), ("g", g)):
-        if not np.isfinite(column).all():
-            k = int(np.flatnonzero(~np.isfinite(column))[0])
-            msg = f"table: {name}[{k}] = {column[k]} is not a number"
+    for name, numbers in (("y", y), (column, g)):
+        if not np.isfinite(numbers).all():
+            k = int(np.flatnonzero(~np.isfinite(numbers))[0])
+            msg = f"table: {name}[{k}] = {numbers[k]} is not a number"
             raise DesignError(msg)
     back = np.flatnonzero(np.diff(y) <= 0)
     if len(back):
@@ -309,6 +314,11 @@ def ripple_deviation(c: float, wavelength: float, span: float) -> Profile:
     )
 
 
+def table_deviation(y: ArrayLike, f: ArrayLike, span: float | None = None) -> Profile:
+    """A cubic spline through points (y, f); as `table`."""
+    return _spline("f", y, f, span)
+
+
 def _wave_number(c: float, wavelength: float) -> float:
     _finite(c=c)
     if not wavelength > 0:
@@ -341,7 +351,7 @@ DEVIATIONS: dict[str, Callable[..., Profile]] = {
     "sin2_slope": sin2_slope_deviation,
     "bump": bump_deviation,
     "ripple": ripple_deviation,
-    "table": lambda y, f, span=None: table(y, f, span),
+    "table": table_deviation,
 }
 
 

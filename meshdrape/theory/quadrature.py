@@ -15,6 +15,13 @@ _NODE, _WEIGHT = np.polynomial.legendre.leggauss(10)
 _NODE_4, _WEIGHT_4 = np.polynomial.legendre.leggauss(4)
 
 
+def distinct(*points: ArrayLike) -> FloatArray:
+    """All of the points in order, those nearer to one another than round-off taken once: a table's abscissae."""
+    ordered = np.unique(np.concatenate([np.atleast_1d(np.asarray(part, dtype=np.float64)) for part in points]))
+    apart = np.diff(ordered) > 1e-12 * (ordered[-1] - ordered[0])
+    return np.asarray(ordered[np.concatenate([[True], apart])])
+
+
 class Primitive:
     """The integral of a function from 0, real or complex, to round-off; call it with any array of points.
 
@@ -31,7 +38,7 @@ class Primitive:
 
     def __init__(self, integrand: Callable[[FloatArray], Array], breaks: ArrayLike) -> None:
         self.integrand = integrand
-        knots = np.unique(np.asarray(breaks, dtype=np.float64))
+        knots = distinct(breaks)
         parts = max(1, 32 // (len(knots) - 1))
         table, whole = self._table(knots, parts)
         for _ in range(8):

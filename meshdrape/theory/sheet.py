@@ -25,7 +25,7 @@ from meshdrape.theory.quadrature import FloatArray, root_between
 Gamma = float | Literal["free"]
 
 NEITHER, RIBBON_FED, WING_FED = 0, 1, 2
-_MOST_NODES = 15_000_000  # some 2 GB of arrays
+MOST_NODES = 15_000_000  # some 2 GB of arrays
 
 
 class Worst(NamedTuple):
@@ -62,6 +62,9 @@ class WingLattice:
         self.fold, self.spacing, self.height, self.row_offset = fold, spacing, height, row_offset
         self.gamma = _checked(fold, spacing, height, gamma, row_offset)
         count = int(np.floor(fold.wing.length / spacing * (1 + 1e-12))) + 1
+        least = count * int(height / spacing)
+        if least > MOST_NODES:
+            raise _too_large(spacing, least)
         self.s = spacing * np.arange(count)
         self.y = fold.wing.at_arc_length(self.s)
         self.edge = fold.spar(self.y)
@@ -69,9 +72,8 @@ class WingLattice:
         self.spar_corner = complex(0.0, float(fold.wing(0.0)))
         self.first_row = int(np.ceil((self.edge.max() - self.corner) / spacing - row_offset)) + 1
         self.row = np.arange(self.first_row, self._last_row() - 1, -1)
-        if count * len(self.row) > _MOST_NODES:
-            msg = f"spacing={spacing}: a net of {count} x {len(self.row)} nodes is too large; raise the spacing"
-            raise NetError(msg)
+        if count * len(self.row) > MOST_NODES:
+            raise _too_large(spacing, count * len(self.row))
         self.x = self.corner + (self.row + row_offset) * spacing
         # a node within 1e-9 spacings of the crease counts as on the spar: its link has no direction on the wing
         self.on_spar = self.x < self.edge[:, None] + 1e-9 * spacing
@@ -164,6 +166,10 @@ class Sheet(WingLattice):
         fed = np.where(torn, NEITHER, fed)
         region = np.where(straddles == 4, fed, NEITHER).astype(np.int8)
         return FoldNet(self, place, shear, region)
+
+
+def _too_large(spacing: float, nodes: int) -> NetError:
+    return NetError(f"spacing={spacing:g}: a net of {nodes:,} nodes is too large; raise the spacing")
 
 
 def _checked(fold: Fold, spacing: float, height: float, gamma: float | str, row_offset: float) -> float:

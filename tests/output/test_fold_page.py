@@ -14,6 +14,7 @@ import pytest
 from meshdrape.errors import FileError
 from meshdrape.output.fold_charts import pictures
 from meshdrape.output.fold_page import fold_page, write_fold_page
+from meshdrape.output.fold_text import fold_text
 from meshdrape.study.fold.answer import (
     Choice,
     Envelope,
@@ -133,11 +134,34 @@ def test_page_says_what_the_answer_says(answer):
     assert rows["upright, γ = 0"][1] == "0.750"
     assert rows["straight on"][1] == "more than 8"
     assert rows["best γ"][1] == "no limit"
-    assert ["spar", "tip", "straight on", "1.00°", "8.25°", "3.50°", "4.00°"] in page.rows
+    assert ["spar", "tip", "straight on", "1.00°", "8.25°", "3.50°", "4.00°", ""] in page.rows
     assert "at most 100.0 mm" in page.text
     assert "its drape proves it (7 drapes)" in page.text
     assert "rows <come> back (y = 2.00 to 3.00 m)" in page.text
     assert "γ = −2.00°" in page.text
+
+
+def test_page_names_the_stations_of_the_largest_shear(answer):
+    page = read(fold_page(answer))
+    assert "Rows from the first sheet: 8.25° at (0.00, 9.00, -0.20) m" in page.text
+    assert "where the row that crosses at y = 1.00 m meets the column that crosses at y = 9.00 m" in page.text
+
+
+def test_page_says_of_another_way_that_it_can_be_made(answer):
+    """An ill-posed one, with what it costs the sheet laid first; and the design's own way, wherever it ranks."""
+    low = Shear(np.radians(3.0), np.radians(2.0))
+    best = Choice("wing", "tip", "best", np.radians(1.0), low, np.radians(4.5))
+    own = Choice("wing", "root", "gamma 0", 0.0, answer.verdict.criteria["drape"], 0.0)
+    others = tuple(Choice("spar", "root", "free", np.radians(k), own.shear, 0.0) for k in range(7))
+    page = read(fold_page(replace(answer, laying=Laying((best, *others, own), best, 0.0))))
+    assert "Laid on the wing first, from the tip, it takes 4.50°" in page.text
+    assert "4.50°; rows come back to the wing, which shears by up to 4.50°" in page.text
+    assert ["wing", "root", "upright, γ = 0", "0.00°", "8.25°", "3.50°", "–", "as designed"] in page.rows
+    assert sum(row[-1:] == ["as designed"] for row in page.rows) == 1
+    text = fold_text(replace(answer, laying=Laying((best, own), best, 0.0)))
+    assert "lay it   first on the wing, from the tip, gamma = 1.00 deg: 4.50 deg, 2.50 to spare; ill-posed" in text
+    assert "so it can be made, though not as laid in the design" in " ".join(text.split())
+    assert max(map(len, text[text.index("lay it") : text.index("how far")].splitlines())) <= 120
 
 
 def test_page_needs_nothing_else(answer):

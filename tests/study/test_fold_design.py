@@ -84,6 +84,20 @@ BAD = {
     "gamma": ({"start": {"gamma_deg": 95}}, "gamma_deg = 95"),
     "unit forgotten": ({"unit": "mm"}, "a wing of 14 mm is too short; is unit = 'mm' right"),
     "unit too large": ({"span": 14000.0}, "a wing of 14000 m is too long"),
+    "only the span in mm": ({"unit": "mm", "span": 14000.0}, "chord: 3 mm wide on a span of 14000 mm; are both in mm?"),
+    "chord in mm": ({"chord": 3000.0}, "chord: 3000 m wide on a span of 14 m"),
+    "wave in mm": ({"spar": {"deviation": "sine", "c": 0.05, "wavelength": 3500.0}}, "wavelength = 3500 m on a span"),
+    "bump in mm": ({"spar": {"deviation": "bump", "c": 0.05, "length": 1000.0}}, "length = 1000 m on a span of 14 m"),
+    "wave between ribbons": (
+        {"spar": {"deviation": "ripple", "c": 1e-5, "wavelength": 0.01}},
+        "[spar] wavelength = 0.01 m is shorter than two ribbons, which lie 0.02 m apart",
+    ),
+    "table in mm": (
+        {"spar": {"deviation": "table", "y": [1000 * y for y in Y], "f": [0.0, 0.1, 0.2, 0.3]}},
+        "[spar] y reaches 14000 m on a span of 14 m",
+    ),
+    "spacing of atoms": ({"spacing": 1e-9}, "spacing = 1e-09 m makes 1.4e+19 nodes"),
+    "integer without end": ({"spar": {"deviation": "linear", "c": 10**400}}, "[spar] c = inf is not finite"),
     "spacing in mm": ({"spacing": 20.0}, "spacing = 20 m leaves no four ribbons"),
     "spar too high": ({"spar_height": 3.5}, "the spar is higher than the wing is wide (chord = 3)"),
     "table falls back": (
@@ -92,7 +106,8 @@ BAD = {
     ),
     "table too short": ({"wing": {"profile": "table", "y": [0.0, 1.0, 2.0, 3.0], "g": [0.0, 0.1, 0.2, 0.3]}}, "cover"),
     "table of three": ({"wing": {"profile": "table", "y": [0.0, 7.0, 14.0], "g": [0.0, 0.1, 0.2]}}, "at least 4"),
-    "table uneven": ({"wing": {"profile": "table", "y": Y, "g": [0.0, 0.1, 0.2]}}, "two equal lists"),
+    "table uneven": ({"wing": {"profile": "table", "y": Y, "g": [0.0, 0.1, 0.2]}}, "got 4 for y and 3 for g"),
+    "deviation uneven": ({"spar": {"deviation": "table", "y": Y, "f": [0.0]}}, "[spar] a table needs two equal lists"),
     "word in a table": ({"wing": {"profile": "table", "y": Y, "g": [0.0, 0.1, "b", 0.3]}}, "g[2] = 'b' is not a"),
     "number for a table": ({"wing": {"profile": "table", "y": 3.0, "g": 1.0}}, "must be a list"),
     "list for a number": ({"spar": {"deviation": "linear", "c": [0.1, 0.2]}}, "must be a number, not a list"),
@@ -112,6 +127,14 @@ def test_bad_designs(name):
         design_from(bad)
     assert says in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_what_is_wrong_with_a_profile_is_said_in_the_units_of_the_file():
+    """3.5 m of the file, not the 3500 mm it is made of; and in which table."""
+    with pytest.raises(DesignError, match=r"^\[spar\] wavelength=-3.5: must be positive$"):
+        design(spar={"deviation": "sine", "c": 0.1, "wavelength": -3.5})
+    with pytest.raises(DesignError, match=r"^\[wing\] radius=13.0: must be larger than the span, 14.0$"):
+        design(wing={"profile": "arc", "radius": 13.0})
 
 
 def test_files_that_are_no_design(tmp_path):

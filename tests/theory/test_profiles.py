@@ -6,7 +6,7 @@ from rates import orders
 from scipy.integrate import quad
 
 from meshdrape.errors import DesignError
-from meshdrape.theory import profiles
+from meshdrape.theory import Fold, profiles
 
 SPAN = 14.0
 Y_TABLE = np.linspace(0, SPAN, 29)
@@ -139,3 +139,17 @@ def test_refused(make, culprit):
     with pytest.raises(DesignError, match=culprit) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+def test_knots_beside_the_stations_of_a_table():
+    """A span that is no round number: knots fall within round-off of the stations of the tables, and of the span."""
+    random = np.random.default_rng(1)
+    for _ in range(60):
+        span, n = random.uniform(0.1, 20), int(random.integers(4, 40))
+        g = profiles.table(np.linspace(0, span, n), 0.01 * span / n * random.normal(size=n), span)
+        y = random.uniform(0, span, 20)
+        assert g.near_arc_length(g.arc_length(y)) == pytest.approx(y, abs=1e-10 * span)
+        fold = Fold(g, g + g.reversed())
+        assert fold.tables.drift(y) == pytest.approx(fold.drift(y), abs=1e-10 * span)
+        at = fold.spar.arc_length(y)
+        assert fold.tables.crease_height(at) == pytest.approx(g(y), abs=1e-9 * span)

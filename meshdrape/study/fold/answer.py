@@ -16,6 +16,8 @@ FloatArray = NDArray[np.float64]
 
 CRITERIA = ("eq20", "eq29", "within_reach", "characteristics", "drape")
 RULES = ("gamma 0", "free", "best")
+# Rows that come back turned by less, rad, come back as they went.
+WELL_POSED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -163,6 +165,7 @@ class Choice:
     shear : Shear
     returning : float
         Turn, rad, with which rows come back to the sheet laid first; 0 where none does. Past 0 the start is ill-posed.
+        Of a choice that was draped, the largest shear of that sheet.
     """
 
     first: str
@@ -175,7 +178,7 @@ class Choice:
     @property
     def well_posed(self) -> bool:
         """Whether no row comes back turned."""
-        return self.returning < 1e-6
+        return self.returning < WELL_POSED
 
     @property
     def largest(self) -> float:
@@ -190,9 +193,11 @@ class Laying:
     Attributes
     ----------
     choices : tuple of Choice
-        Every first side, end and rule, the cheapest first.
+        Every first side, end and rule: those that keep the locking angle first, well-posed before ill-posed, cheap
+        before dear.
     best : Choice
-        The cheapest well-posed one, if there is one.
+        The first of them: the cheapest well-posed one that keeps the locking angle; where none does, an ill-posed one
+        that does, the sheet laid first shearing too; else the cheapest well-posed one.
     gamma_best : float
         The gamma that makes the ribbon-fed shear least for the design's own first side and end, rad.
     """

@@ -13,7 +13,7 @@ from meshdrape.study.fold.design import Design
 from meshdrape.study.fold.frame import Cloth, Frame, frame_of
 from meshdrape.study.fold.lay import FoldDrape, lay
 from meshdrape.study.fold.limits import limits
-from meshdrape.study.fold.mould import CadMould, cad_mould
+from meshdrape.study.fold.mould import CadMould, FoldMould, cad_mould, ruled_mould
 from meshdrape.study.fold.nearest import nearest_spar
 from meshdrape.study.fold.notices import notices
 from meshdrape.study.fold.ways import ways
@@ -27,13 +27,26 @@ Step = Callable[[int], None]
 def drape_design(design: Design) -> FoldDrape:
     """The full drape of a design on its CAD mould, from a row that stays on the side laid first."""
     frame, gamma, cloth = _cloth(design)
-    return lay(cloth, cad_mould(design, frame, cloth), gamma, design.locking_angle)
+    return _laid(design, frame, gamma, cloth, cad_mould(design, frame, cloth))
 
 
 def _cloth(design: Design) -> tuple[Frame, float, Cloth]:
     frame = frame_of(design)
     gamma = frame.gamma(design.gamma)
     return frame, gamma, Cloth.of(frame, design.spacing, design.row_offset, gamma)
+
+
+def _laid(design: Design, frame: Frame, gamma: float, cloth: Cloth, mould: FoldMould) -> FoldDrape:
+    """The drape on a CAD mould.
+
+    Where the cloth ends too early there, the facets of a tessellation being at fault for a row that runs along the
+    very crease, the same surfaces are draped on facets along their rulings.
+    """
+    drape = lay(cloth, mould, gamma, design.locking_angle)
+    if not drape.lost:
+        return drape
+    ruled = lay(cloth, ruled_mould(frame, cloth), gamma, design.locking_angle)
+    return ruled if ruled.lost < drape.lost else drape
 
 
 def fold_answer(
@@ -89,7 +102,7 @@ def fold_answer(
             mould.made()  # what keeps it from being a mould at all is told first
             raise
         stage("draping the design", None)
-        drape = lay(cloth, mould.made(), gamma, design.locking_angle)
+        drape = _laid(design, frame, gamma, cloth, mould.made())
         lap("drape")
     stage("comparing criteria", None)
     said = verdict(design, drape)

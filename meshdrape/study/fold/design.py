@@ -15,6 +15,7 @@ import numpy as np
 from meshdrape.errors import DesignError, FileError
 from meshdrape.theory import Fold, Profile, named_deviation, named_profile
 from meshdrape.theory.profiles import DEVIATIONS, PROFILES
+from meshdrape.theory.sheet import MOST_NODES
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
 
@@ -24,6 +25,9 @@ _LENGTH_C = ("sine", "bump", "ripple")  # c is a length there, elsewhere a slope
 
 # A wing shorter than this, or longer, mm, has its lengths in another unit than it says.
 SHORTEST_SPAN, LONGEST_SPAN = 100.0, 200e3
+
+# A chord or a wave so many spans long has forgotten its unit; so has a chord or a height of a thousandth of the span.
+FAR_LONGER = 50.0
 
 _SIZES = ("span", "chord", "spar_height", "spacing")
 _TOP = ("unit", *_SIZES, "locking_angle_deg", "row_offset", "wing", "spar", "start")
@@ -171,8 +175,8 @@ def design_from(table: dict[str, Any]) -> Design:
         msg = f"row_offset = {offset:g}: must lie between 0 and 1"
         raise DesignError(msg)
     _check_sizes(size, unit)
-    wing = _shape(_part(table, "wing"), "profile", PROFILES, "[wing]", mm)
-    spar, deviation = _spar(_part(table, "spar"), mm)
+    wing = _shape(_part(table, "wing"), "profile", PROFILES, "[wing]", size, unit)
+    spar, deviation = _spar(_part(table, "spar"), size, unit)
     start = _part(table, "start", {})
     _only(start, _START, "[start]")
     design = Design(
@@ -194,39 +198,68 @@ def design_from(table: dict[str, Any]) -> Design:
     return design
 
 
-def _spar(part: dict[str, Any], mm: float) -> tuple[Shape | None, Shape | None]:
+def _spar(part: dict[str, Any], size: dict[str, float], unit: str) -> tuple[Shape | None, Shape | None]:
     if "profile" in part and "deviation" in part:
         msg = "[spar] has both a profile and a deviation: give g_s by its profile, or f = g_s - g_w by deviation"
         raise DesignError(msg)
     if "profile" in part:
-        return _shape(part, "profile", PROFILES, "[spar]", mm), None
-    return None, _shape(part, "deviation", DEVIATIONS, "[spar]", mm)
+        return _shape(part, "profile", PROFILES, "[spar]", size, unit), None
+    return None, _shape(part, "deviation", DEVIATIONS, "[spar]", size, unit)
 
 
-def _shape(part: dict[str, Any], key: str, known: Any, where: str, mm: float) -> Shape:
+def _shape(part: dict[str, Any], key: str, known: Any, where: str, size: dict[str, float], unit: str) -> Shape:
     name = _word(part, key, None, known, f"{where} ")
-    parameters: dict[str, Any] = {}
+    given: dict[str, Any] = {}
     for parameter, value in part.items():
         if parameter == key:
             continue
         if parameter == "metre" or parameter == "span":
             msg = f"{where} {key} {name!r} does not take {parameter!r}"
             raise DesignError(msg)
-        power = (1 if name in _LENGTH_C else 0) if parameter == "c" else _POWER.get(parameter, 0)
         if isinstance(value, list):
-            column = [_real(one, f"{where} {parameter}[{k}]") for k, one in enumerate(value)]
-            parameters[parameter] = np.array(column) * mm**power
+            given[parameter] = np.array([_real(one, f"{where} {parameter}[{k}]") for k, one in enumerate(value)])
         else:
-            parameters[parameter] = _real(value, f"{where} {parameter}") * mm**power
-    for column_name in ("y", "g", "f"):
-        if name == "table" and column_name in parameters and np.ndim(parameters[column_name]) != 1:
-            msg = f"{where} {column_name} must be a list of numbers, such as {column_name} = [0.0, 1.0, 2.0, 3.0]"
+            given[parameter] = _real(value, f"{where} {parameter}")
+    for column in ("y", "g", "f"):
+        if name == "table" and column in given and np.ndim(given[column]) != 1:
+            msg = f"{where} {column} must be a list of numbers, such as {column} = [0.0, 1.0, 2.0, 3.0]"
             raise DesignError(msg)
-    for parameter, value in parameters.items():
+    for parameter, value in given.items():
         if name != "table" and np.ndim(value):
             msg = f'{where} {parameter} must be a number, not a list; a list belongs to {key} = "table"'
             raise DesignError(msg)
-    return Shape(name, parameters)
+    _check_shape(Shape(name, given), key, where, size, unit)
+    return Shape(
+        name, {parameter: value * UNITS[unit] ** _power(name, parameter) for parameter, value in given.items()}
+    )
+
+
+def _power(name: str, parameter: str) -> int:
+    """Of length, in a parameter of a profile or a deviation."""
+    if parameter == "c":
+        return 1 if name in _LENGTH_C else 0
+    return _POWER.get(parameter, 0)
+
+
+def _check_shape(shape: Shape, key: str, where: str, size: dict[str, float], unit: str) -> None:
+    """Make the shape once in the file's own unit, so that what is wrong with it is said in its numbers."""
+    span, spacing = size["span"] / UNITS[unit], size["spacing"] / UNITS[unit]
+    try:
+        (named_profile if key == "profile" else named_deviation)(shape.name, span, **shape.parameters)
+    except DesignError as error:
+        msg = f"{where} {error}"
+        raise DesignError(msg) from None
+    for parameter in ("wavelength", "length", "y"):
+        if parameter not in shape.parameters:
+            continue
+        longest = float(np.max(np.abs(shape.parameters[parameter])))
+        what = f"{where} {parameter} = {longest:g}" if parameter != "y" else f"{where} y reaches {longest:g}"
+        if longest > FAR_LONGER * span:
+            msg = f"{what} {unit} on a span of {span:g} {unit}; is it in {unit}?"
+            raise DesignError(msg)
+        if parameter != "y" and longest < 2 * spacing:
+            msg = f"{what} {unit} is shorter than two ribbons, which lie {spacing:g} {unit} apart; is it in {unit}?"
+            raise DesignError(msg)
 
 
 def _gamma(start: dict[str, Any]) -> float | str:
@@ -251,10 +284,24 @@ def _check_sizes(size: dict[str, float], unit: str) -> None:
             f"is unit = {unit!r} right? known units: {', '.join(UNITS)}"
         )
         raise DesignError(msg)
+    for name, value, what in (("chord", chord, "wide"), ("spar_height", height, "high")):
+        if not span / (20 * FAR_LONGER) <= value <= FAR_LONGER * span:
+            msg = (
+                f"{name}: {value / UNITS[unit]:g} {unit} {what} on a span of {span / UNITS[unit]:g} {unit}; "
+                f"are both in {unit}?"
+            )
+            raise DesignError(msg)
     if height > chord:
         msg = (
             f"spar_height = {height / UNITS[unit]:g}: the spar is higher than the wing is wide "
             f"(chord = {chord / UNITS[unit]:g}); are both in {unit}?"
+        )
+        raise DesignError(msg)
+    nodes = span / spacing * (height / spacing)
+    if nodes > MOST_NODES:
+        msg = (
+            f"spacing = {spacing / UNITS[unit]:g} {unit} makes {nodes:.2g} nodes on a spar of "
+            f"{height / UNITS[unit]:g} {unit}, more than {MOST_NODES:.2g}; is it in {unit}?"
         )
         raise DesignError(msg)
     if spacing > min(height, span) / 4:
@@ -340,7 +387,11 @@ def _real(value: Any, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         msg = f"{what} = {value!r} is not a number"
         raise DesignError(msg)
-    if not math.isfinite(value):
-        msg = f"{what} = {value!r} is not finite"
+    try:
+        number = float(value)
+    except OverflowError:  # TOML's integers have no end
+        number = math.inf
+    if not math.isfinite(number):
+        msg = f"{what} = {number} is not finite"
         raise DesignError(msg)
-    return float(value)
+    return number

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,6 +22,8 @@ from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
 
+# Where the cloth folds, warp and weft are within a degree of parallel: it has sheared by that much at least, rad.
+FOLDED = math.radians(89.0)
 # A node this near to the crease, in spacings, is on the spar.
 ON_CREASE = 1e-6
 
@@ -45,6 +48,8 @@ class FoldDrape:
         0 neither: on the wing, across the crease, or between a row of either kind.
     within : (columns - 1, rows - 1) bool
         Cells all of whose corners lie on the mould, within the height.
+    lost : int
+        Cells that lie on the mould with one corner and miss another: the cloth folds there, and ends.
     """
 
     cloth: Cloth
@@ -55,6 +60,7 @@ class FoldDrape:
     on_spar: NDArray[np.bool_]
     region: NDArray[np.int8]
     within: NDArray[np.bool_]
+    lost: int = 0
 
     def worst(self, region: int) -> tuple[float, tuple[int, int]]:
         """The largest |shear| of a region and its cell; 0 and (-1, -1) of a region without cells."""
@@ -74,8 +80,8 @@ class FoldDrape:
 
     @property
     def asked(self) -> float:
-        """What the cloth has to shear by anywhere but in the cells that straddle the crease, rad."""
-        return max(self.largest.largest, self.first_sheet)
+        """What the cloth shears by anywhere but in cells that straddle the crease, rad; `FOLDED` where it folds."""
+        return max(self.largest.largest, self.first_sheet, FOLDED if self.lost else 0.0)
 
 
 def _largest(shear: FloatArray, cells: NDArray[np.bool_]) -> tuple[float, tuple[int, int]]:
@@ -121,7 +127,10 @@ def read(cloth: Cloth, mould: FoldMould, gamma: float, net: Net) -> FoldDrape:
     deep = on & ~(crease_z - node[..., 2] <= frame.height * (1 + 1e-9))
     kept = (status == NodeStatus.PLACED) & ~deep
     within = kept[:-1, :-1] & kept[1:, :-1] & kept[:-1, 1:] & kept[1:, 1:]
-    return FoldDrape(cloth, gamma, net, node, shear, on, regions(on), within)
+    ends = status >= NodeStatus.FOLDED
+    ends, begun = (part[:-1, :-1] | part[1:, :-1] | part[:-1, 1:] | part[1:, 1:] for part in (ends, kept))
+    lost = int(np.count_nonzero(ends & begun))
+    return FoldDrape(cloth, gamma, net, node, shear, on, regions(on), within, lost)
 
 
 def _window(values: NDArray[Any], i: int, j: int, shape: tuple[int, ...], missing: object) -> NDArray[Any]:

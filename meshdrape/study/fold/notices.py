@@ -11,7 +11,6 @@ from meshdrape.study.fold.answer import FoldWarning, Verdict
 from meshdrape.study.fold.design import Design
 from meshdrape.study.fold.lay import FoldDrape
 from meshdrape.theory import grazing_rows, returning_rows, separation_of_scales
-from meshdrape.weave.status import NodeStatus
 
 # Rows within this of the edge's direction graze it, rad.
 GRAZING = math.radians(1.0)
@@ -57,15 +56,21 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
         _joined(scales.coarse),
         f"psi changes by more than 0.5 deg from one ribbon to the next, by {math.degrees(scales.turn_change):.2f} deg "
         f"at y = {frame.station(scales.y):,.0f} mm: a spacing of {design.spacing:g} mm is too coarse for condition "
-        "(24), and the criteria are out by as much",
+        "(24), and a criterion that takes psi for constant over a cell may be out by as much there",
     )
     if (verdict.criteria["characteristics"].largest <= design.locking_angle) != verdict.feasible:
         found.append(
             FoldWarning("verdict", "too close to call: drape and characteristic construction decide differently")
         )
-    lost = int(np.count_nonzero(drape.net.node_status >= NodeStatus.FOLDED))
-    if lost:
-        found.append(FoldWarning("drape", f"{lost:,} nodes of the drape could not be placed: the cloth folds there"))
+    if drape.lost:
+        node = drape.node[np.isfinite(drape.node).all(axis=-1)]
+        found.append(
+            FoldWarning(
+                "drape",
+                f"the cloth folds and ends before it covers the mould, {drape.lost:,} cells wide; it was laid up to "
+                f"y = {frame.station(float(node[:, 1].max())):,.0f} mm, and what lies beyond is not known",
+            )
+        )
     if drape.cloth.width > (design.spar_height if frame.first == "spar" else design.chord):
         found.append(
             FoldWarning(
