@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from meshdrape.errors import MouldError
+from meshdrape.mould.apart import step
 from meshdrape.mould.patch import Bools, Floats, Nodes, Patch, Tolerances
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ FEWEST_PROBES: Final = 5
 # Probes keep this share of a segment away from its ends, where the curve may have a kink.
 ASIDE: Final = 1 / 64
 MOST_NODES: Final = 200_000
+# mm; what is smaller is not divided: a kink that the curve does not tell of, or a pole, would be for ever.
+SHORTEST: Final = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +70,7 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
     MouldError
         The tolerances ask for more nodes than any mould needs.
     """
+    step()
     curve, segments = _smooth_pieces(passages[0].edge)
     turn = tolerances.angle if _is_crease(passages, segments) else tolerances.gauss_angle
     done = [segments[:, 0], segments[-1:, 1]]
@@ -74,9 +78,10 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
     while len(segments):
         probes = np.linspace(ASIDE, 1 - ASIDE, n_probes)
         at = segments[:, :1] + np.diff(segments, axis=1) * probes
-        split = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
+        split, length = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
         for passage in passages:
             split |= _metric_length(passage, at) > 1.0
+        split &= length > SHORTEST
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])
@@ -118,8 +123,10 @@ def _is_crease(passages: list[Passage], segments: Floats) -> bool:
     return bool((np.linalg.norm(one - other, axis=1) > CREASE).any())
 
 
-def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float) -> Bools:
-    """Whether the curve leaves the chord of a segment by more than the tolerance or the angle, (s,)."""
+def _leaves_chord(
+    curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float
+) -> tuple[Bools, Floats]:
+    """Whether the curve leaves the chord of a segment by more than the tolerance or the angle, and its size, (s,)."""
     from OCP.gp import gp_Pnt, gp_Vec
 
     point, derivative = gp_Pnt(), gp_Vec()
@@ -134,7 +141,8 @@ def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: flo
     aside = offset - np.einsum("spi,si->sp", offset, along)[..., None] * along[:, None]
     speed = np.linalg.norm(tangent, axis=2)
     turned = np.einsum("spi,si->sp", tangent, along) < np.cos(direction) * speed
-    return np.asarray(((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1))
+    leaves = np.asarray(((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1))
+    return leaves, np.linalg.norm(values[:, 1:, 0] - start[:, None], axis=2).max(axis=1)
 
 
 def _metric_length(passage: Passage, at: Floats) -> Floats:

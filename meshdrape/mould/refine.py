@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from meshdrape.errors import MouldError
+from meshdrape.mould.edges import SHORTEST
 from meshdrape.mould.facets import Facets
 from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances
 
@@ -72,6 +73,7 @@ def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools
         size[here] = _size_from_pole(nodes, pole[here], other[here], tolerances.chord)
     plain = ~flat & ~pole_a & ~pole_b
     size[plain] = _plain_size(nodes, a[plain], b[plain], tolerances.chord)
+    size[np.linalg.norm(nodes.position[a] - nodes.position[b], axis=1) <= SHORTEST] = 0.0
     return size
 
 
