@@ -6,6 +6,8 @@ import argparse
 import shlex
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +23,10 @@ from meshdrape.cli.options import (
     read_path,
 )
 from meshdrape.cli.progress import Progress, compilation_told
+from meshdrape.errors import FileError, StartError
 
+# What is written beside NET.ply: the mould, fibres, the picture and the summary.
+COMPANIONS = (".mould.ply", ".fibres.ply", ".png", ".json")
 # libigl's audit may take this long, s, and stops at this many edges.
 AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
 
@@ -75,6 +80,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
     net_path = Path(options.output)
     check_target(net_path)
+    _require_own_files(net_path, [options.mould, options.warp_path, options.weft_path])
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
     warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()
@@ -97,7 +103,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         clock.lap("imports")
         progress.stage("draping")
         prepare()
-        with compilation_told(options.quiet):
+        with compilation_told(options.quiet), _paths_named(options):
             net = drape(
                 mould,
                 fabric,
@@ -141,13 +147,38 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             summary["refinement"] = refined.facts()
         from meshdrape.output import json_text, write_json
 
-        json_path = net_path.with_suffix(".json")
+        json_path = net_path.with_suffix(COMPANIONS[3])
         write_json(summary, json_path)
     if options.json:
         sys.stdout.write(json_text(summary))
     elif not options.quiet:
         sys.stdout.write(_report(summary, [*files, json_path]))
     return FABRIC_MISSING if fabric_missing(net) else DONE
+
+
+def _require_own_files(net_path: Path, given: list[str | None]) -> None:
+    """Raise FileError where a file of the results would take the place of another, or of one that is read."""
+    if net_path.suffix.lower() != ".ply":
+        msg = f"{net_path} has the suffix {net_path.suffix or '(none)'}; a net is written as .ply"
+        raise FileError(msg)
+    inputs = [Path(name) for name in given if name is not None and Path(name).exists()]
+    for target in (net_path, *(net_path.with_suffix(suffix) for suffix in COMPANIONS)):
+        if target.exists() and any(target.samefile(one) for one in inputs):
+            msg = f"{target} is read and would be overwritten by the net {net_path}; give the net another name"
+            raise FileError(msg)
+
+
+@contextmanager
+def _paths_named(options: argparse.Namespace) -> Iterator[None]:
+    """Errors of a path told of the file it is in, by which its user knows it."""
+    try:
+        yield
+    except StartError as error:
+        text = str(error)
+        for name in ("warp", "weft"):
+            text = text.replace(f"{name}_turn", f"--{name}-turn-deg")
+            text = text.replace(f"{name}_path", getattr(options, f"{name}_path") or f"--{name}-path")
+        raise StartError(text) from error
 
 
 class _Clock:
@@ -171,9 +202,7 @@ class _Clock:
 def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, picture: bool) -> list[Path]:
     from meshdrape.output import draw_net, write_fibres_ply, write_mould_ply, write_ply
 
-    mould_path, fibres_path, picture_path = (
-        net_path.with_suffix(suffix) for suffix in (".mould.ply", ".fibres.ply", ".png")
-    )
+    mould_path, fibres_path, picture_path = (net_path.with_suffix(suffix) for suffix in COMPANIONS[:3])
     write_ply(net, net_path, measures, foretold)
     write_mould_ply(field, mould_path, net.fabric.locking_angle)
     write_fibres_ply(net, fibres_path)

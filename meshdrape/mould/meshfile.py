@@ -134,10 +134,10 @@ def read_mesh_mould(path: str | os.PathLike[str], unit: str | None = None, heal:
     healing: HealReport | None = None
     try:
         if heal:
-            from meshdrape.mould.heal import heal as healed
+            from meshdrape.mould.heal import heal_apart
 
             factor = millimetres(unit or "mm")
-            vertices, triangles, healing = healed(factor * vertices, triangles)
+            vertices, triangles, healing = heal_apart(factor * vertices, triangles)
             mould = replace(Mould.from_arrays(vertices, triangles), unit=unit or "mm")
         else:
             mould = Mould.from_arrays(vertices, triangles, unit or "mm")

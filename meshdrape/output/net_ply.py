@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape import __version__
-from meshdrape.errors import NetError
+from meshdrape.errors import MeshdrapeError, NetError
+from meshdrape.mould.check import FARTHEST
+from meshdrape.mould.files import brief
 from meshdrape.output.columns import COLOUR, POSITION, SHEAR_FIELDS, fill, fill_shear
 from meshdrape.output.comments import from_comments, to_comments
 from meshdrape.output.ply import Element, Rows, ply_writer
@@ -213,8 +215,8 @@ def read_net(path: str | os.PathLike[str]) -> StoredNet:
     ply = read_ply(path)
     try:
         return _stored_net(Path(path), ply)
-    except (KeyError, ValueError, IndexError, TypeError, AttributeError, OverflowError) as error:
-        msg = f"{path} is not a net that meshdrape wrote ({_reason(error)}); give the NET.ply of a drape"
+    except (KeyError, ValueError, IndexError, TypeError, AttributeError, OverflowError, MeshdrapeError) as error:
+        msg = f"{path} is not a net that meshdrape wrote ({brief(_reason(error))}); give the NET.ply of a drape"
         raise NetError(msg) from None
 
 
@@ -339,6 +341,18 @@ def _prescribed(net: Net) -> dict[str, Any]:
     return values
 
 
+def _require_places(node: Rows, arrays: list[FloatArray]) -> None:
+    """Raise ValueError for a node whose place or directions are no numbers, or beyond all measure."""
+    at = node["i"], node["j"]
+    limits = (("place", FARTHEST), ("warp direction", 1.1), ("weft direction", 1.1))
+    for array, (what, most) in zip(arrays, limits, strict=True):
+        # NaN fails the comparison too
+        wrong = np.flatnonzero(~(np.abs(array[at]) <= most).all(axis=1))
+        if len(wrong):
+            msg = f"its node {int(at[0][wrong[0]])}, {int(at[1][wrong[0]])} has no {what}"
+            raise ValueError(msg)
+
+
 def _number(value: Any) -> float | None:
     return None if value is None else float(value)
 
@@ -360,8 +374,11 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     n_warp, n_weft = made["nodes"]
     seed, direction = (np.array(made[name], dtype=np.float64) for name in ("seed", "direction"))
     origin = (int(made["seed_index"][0]), int(made["seed_index"][1]))
-    if not (seed.shape == direction.shape == (3,) and np.isfinite([seed, direction]).all() and direction.any()):
+    if not (seed.shape == direction.shape == (3,) and np.isfinite(direction).all() and direction.any()):
         msg = "its seed or direction is none"
+        raise ValueError(msg)
+    if not (np.abs(seed) <= FARTHEST).all():
+        msg = f"its seed {seed.tolist()} is not a point within {FARTHEST:g} mm"
         raise ValueError(msg)
     if not (0 <= origin[0] < n_warp and 0 <= origin[1] < n_weft):
         msg = f"its seed has the index {origin} in {n_warp} x {n_weft} nodes"
@@ -380,6 +397,7 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
         for array, names in zip(arrays, (POSITION, _WARP, _WEFT), strict=True):
             for k, name in enumerate(names):
                 array[(*at, k)] = rows[name]
+    _require_places(node, arrays)
     flat = status.ravel()
     for i, j, length, value in gap[["i", "j", "length", "status"]].tolist():
         flat[i * n_weft + j : i * n_weft + j + length] = value

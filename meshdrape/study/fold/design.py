@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from meshdrape.errors import DesignError, FileError
+from meshdrape.mould.files import brief, existing_file
 from meshdrape.theory import Fold, Profile, named_deviation, named_profile
 from meshdrape.theory.profiles import DEVIATIONS, PROFILES
 
@@ -136,16 +137,11 @@ def read_design(path: str | PathLike[str]) -> Design:
     DesignError
         It makes no wing box: one line that names the key and the way out.
     """
-    source = Path(path)
+    source = existing_file(path, "design")
     try:
-        text = source.read_bytes()
-    except OSError as error:
-        msg = f"cannot read {path}: {error.strerror}"
-        raise FileError(msg) from None
-    try:
-        table = tomllib.loads(text.decode("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        msg = f"{path} is no TOML: {' '.join(str(error).split())}"
+        table = tomllib.loads(source.read_bytes().decode("utf-8"))
+    except (ValueError, RecursionError) as error:  # TOML's and UTF-8's are ValueErrors, as are endless integers
+        msg = f"{path} is no TOML: {brief(error)}; write it as samples/designs have it"
         raise FileError(msg) from None
     try:
         return replace(design_from(table), source=source)
