@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 import sys
 import time
@@ -25,8 +26,9 @@ from meshdrape.cli.options import (
 from meshdrape.cli.progress import Progress, compilation_told
 from meshdrape.errors import FileError, StartError
 
-# What is written beside NET.ply: the mould, fibres, the picture and the summary.
-COMPANIONS = (".mould.ply", ".fibres.ply", ".png", ".json")
+# What is written beside NET.ply.
+MOULD, FIBRES, PICTURE, SUMMARY = ".mould.ply", ".fibres.ply", ".png", ".json"
+COMPANIONS = (MOULD, FIBRES, PICTURE, SUMMARY)
 # libigl's audit may take this long, s, and stops at this many edges.
 AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
 
@@ -80,7 +82,14 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
     net_path = Path(options.output)
     check_target(net_path)
-    _require_own_files(net_path, [options.mould, options.warp_path, options.weft_path])
+    if net_path.suffix.lower() != ".ply":
+        # its companions have others, and would take its place
+        msg = f"{net_path} has the suffix {net_path.suffix or '(none)'}; a net is written as .ply"
+        raise FileError(msg)
+    companions = [net_path.with_suffix(suffix) for suffix in COMPANIONS if suffix != PICTURE or not options.no_picture]
+    for companion in companions:
+        check_target(companion)
+    _require_own_files([net_path, *companions], [options.mould, options.warp_path, options.weft_path])
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
     warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()
@@ -147,7 +156,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             summary["refinement"] = refined.facts()
         from meshdrape.output import json_text, write_json
 
-        json_path = net_path.with_suffix(COMPANIONS[3])
+        json_path = net_path.with_suffix(SUMMARY)
         write_json(summary, json_path)
     if options.json:
         sys.stdout.write(json_text(summary))
@@ -156,15 +165,12 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     return FABRIC_MISSING if fabric_missing(net) else DONE
 
 
-def _require_own_files(net_path: Path, given: list[str | None]) -> None:
-    """Raise FileError where a file of the results would take the place of another, or of one that is read."""
-    if net_path.suffix.lower() != ".ply":
-        msg = f"{net_path} has the suffix {net_path.suffix or '(none)'}; a net is written as .ply"
-        raise FileError(msg)
-    inputs = [Path(name) for name in given if name is not None and Path(name).exists()]
-    for target in (net_path, *(net_path.with_suffix(suffix) for suffix in COMPANIONS)):
-        if target.exists() and any(target.samefile(one) for one in inputs):
-            msg = f"{target} is read and would be overwritten by the net {net_path}; give the net another name"
+def _require_own_files(targets: list[Path], given: list[str | None]) -> None:
+    """Raise FileError where a file of the results would take the place of one that is read."""
+    inputs = {os.path.realpath(name) for name in given if name is not None}
+    for target in targets:
+        if os.path.realpath(target) in inputs:
+            msg = f"{target} is read and would be overwritten by the net; give the net another name than {targets[0]}"
             raise FileError(msg)
 
 
@@ -202,7 +208,7 @@ class _Clock:
 def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, picture: bool) -> list[Path]:
     from meshdrape.output import draw_net, write_fibres_ply, write_mould_ply, write_ply
 
-    mould_path, fibres_path, picture_path = (net_path.with_suffix(suffix) for suffix in COMPANIONS[:3])
+    mould_path, fibres_path, picture_path = (net_path.with_suffix(suffix) for suffix in (MOULD, FIBRES, PICTURE))
     write_ply(net, net_path, measures, foretold)
     write_mould_ply(field, mould_path, net.fabric.locking_angle)
     write_fibres_ply(net, fibres_path)

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from meshdrape.errors import FileError
+from meshdrape.errors import FileError, MouldError
 from meshdrape.mould import library
 from meshdrape.mould.brep import brep_mould, cad_faces
 from meshdrape.mould.cad import with_script
@@ -62,7 +62,11 @@ def make(
     def work(shape: NamedShape) -> Made:
         n_triangles = None
         if suffix == ".stl":
-            mould = tessellated(shape, called, chord_tolerance, angle_tolerance)
+            try:
+                mould = tessellated(shape, called, chord_tolerance, angle_tolerance)
+            except MouldError as error:
+                msg = f"{called}: {error}"
+                raise MouldError(msg) from error
             content, n_triangles = stl_bytes(mould, name), len(mould.triangles)
         else:
             content = brep_bytes(shape) if suffix in (".brep", ".brp") else step_bytes(shape, name)

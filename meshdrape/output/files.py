@@ -82,6 +82,12 @@ def _sweep(target: Path) -> None:
 def check_target(path: str | os.PathLike[str]) -> None:
     """Raise FileError now if a file could not be written under this name later."""
     target = Path(os.path.realpath(path))
+    try:
+        target.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except OSError as error:  # too long a name, a ring of links
+        raise FileError(_refusal(path, target, error)) from None
     if not target.parent.is_dir():
         msg = f"cannot write {path}: the folder {target.parent} does not exist; create it or choose another"
         raise FileError(msg)
