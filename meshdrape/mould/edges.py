@@ -78,10 +78,9 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
     while len(segments):
         probes = np.linspace(ASIDE, 1 - ASIDE, n_probes)
         at = segments[:, :1] + np.diff(segments, axis=1) * probes
-        split, length = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
+        split = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
         for passage in passages:
-            split |= _metric_length(passage, at) > 1.0
-        split &= length > SHORTEST
+            split |= _is_long(passage, at)
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])
@@ -123,10 +122,8 @@ def _is_crease(passages: list[Passage], segments: Floats) -> bool:
     return bool((np.linalg.norm(one - other, axis=1) > CREASE).any())
 
 
-def _leaves_chord(
-    curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float
-) -> tuple[Bools, Floats]:
-    """Whether the curve leaves the chord of a segment by more than the tolerance or the angle, and its size, (s,)."""
+def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float) -> Bools:
+    """Whether the curve leaves the chord of a segment by more than the tolerance or the angle, (s,)."""
     from OCP.gp import gp_Pnt, gp_Vec
 
     point, derivative = gp_Pnt(), gp_Vec()
@@ -141,16 +138,22 @@ def _leaves_chord(
     aside = offset - np.einsum("spi,si->sp", offset, along)[..., None] * along[:, None]
     speed = np.linalg.norm(tangent, axis=2)
     turned = np.einsum("spi,si->sp", tangent, along) < np.cos(direction) * speed
-    leaves = np.asarray(((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1))
-    return leaves, np.linalg.norm(values[:, 1:, 0] - start[:, None], axis=2).max(axis=1)
+    leaves = ((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1)
+    return np.asarray(leaves & _has_size(values[..., 0, :]))
 
 
-def _metric_length(passage: Passage, at: Floats) -> Floats:
-    """Length of segments on a face in its metric, (s,)."""
+def _is_long(passage: Passage, at: Floats) -> Bools:
+    """Whether segments are longer than a unit in the metric of a face, (s,)."""
     nodes = passage.nodes(at.ravel())
     uv, metric = nodes.uv.reshape(*at.shape, 2), nodes.metric.reshape(*at.shape, 3)
     (du, dv), (uu, uv_, vv) = (
         np.moveaxis(np.diff(uv, axis=1), 2, 0),
         np.moveaxis((metric[:, 1:] + metric[:, :-1]) / 2, 2, 0),
     )
-    return np.asarray(np.sqrt(np.maximum(uu * du**2 + 2 * uv_ * du * dv + vv * dv**2, 0.0)).sum(axis=1))
+    length = np.sqrt(np.maximum(uu * du**2 + 2 * uv_ * du * dv + vv * dv**2, 0.0)).sum(axis=1)
+    return np.asarray((length > 1.0) & _has_size(nodes.position.reshape(*at.shape, 3)))
+
+
+def _has_size(points: Floats) -> Bools:
+    """Whether the points along a segment, (s, p, 3), do not all lie in one place, (s,)."""
+    return np.asarray(np.linalg.norm(points - points[:, :1], axis=2).max(axis=1) > SHORTEST)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
@@ -17,11 +17,15 @@ MOST_DRIFT: Final = 0.1
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
 SIZE_CLASS: Final = 1.25
 MOST_TRIANGLES: Final = 2_000_000
+# The largest size falls from hundreds to one in some thirty rounds; where it has stayed above LARGE for so many, it
+# stays for ever, for edges on the outline are not split.
+ROUNDS: Final = 40
+LARGE: Final = 2.0
 
 Evaluate = Callable[[Ints, Floats], Nodes]
 
 
-def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate: Evaluate) -> None:
+def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate: Evaluate, ids: Sequence[int]) -> None:
     """Split inner edges in the middle, largest first, and keep the facets Delaunay.
 
     Parameters
@@ -33,17 +37,26 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
         These keep to their outlines, unless an edge between two nodes there turns the normal by far too much.
     evaluate : callable
         Nodes on the faces of the given indices, (k,), at the given parameters, (k, 2).
+    ids : sequence of int
+        What the user calls the faces.
 
     Raises
     ------
     MouldError
-        The tolerances ask for more triangles than any mould needs.
+        The tolerances ask for more triangles than any mould needs, or facets never come to follow a face.
     """
+    largest: list[float] = []
     random = np.random.default_rng(0)
     while True:
         edge = facets.inner_edges()
         size = _size(facets, edge, tolerances, developable)
         edge, size = edge[size > 1], size[size > 1]
+        if len(edge):
+            largest.append(float(size.max()))
+            if largest[-1] > LARGE and largest[-1] > 0.9 * largest[-ROUNDS:][0] and len(largest) >= ROUNDS:
+                number = ids[facets.nodes.face[facets.quads(edge[[size.argmax()]])[0][0]]]
+                msg = f"no facets follow face {number}, however small: its outline does not lie on it; mend it in CAD"
+                raise MouldError(msg)
         edge = edge[facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))]
         if not len(edge):
             return

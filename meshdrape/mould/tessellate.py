@@ -96,7 +96,7 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
         back[order] = np.arange(len(order))
         return found[back]
 
-    refine(facets, tolerances, np.array([patch.developable for patch in patches]), evaluate)
+    refine(facets, tolerances, np.array([patch.developable for patch in patches]), evaluate, ids)
     vertices, triangles, face = _assembled(
         facets, patches, outlines.position, np.concatenate([r.number for r in rings])
     )
