@@ -9,6 +9,7 @@ import numpy as np
 
 from meshdrape.errors import MouldError
 from meshdrape.mould.apart import step
+from meshdrape.mould.check import FARTHEST
 from meshdrape.mould.patch import Bools, Floats, Nodes, Patch, Tolerances
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ MOST_PROBES: Final = 33
 FEWEST_PROBES: Final = 5
 # Probes keep this share of a segment away from its ends, where the curve may have a kink.
 ASIDE: Final = 1 / 64
-MOST_NODES: Final = 200_000
+MOST_NODES: Final = 50_000
 # mm; what is smaller is not divided: a kink that the curve does not tell of, or a pole, would be for ever.
 SHORTEST: Final = 1e-5
 
@@ -132,6 +133,10 @@ def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: flo
         curve.D1(t, point, derivative)
         rows.append(point.Coord() + derivative.Coord())
     values = np.array(rows).reshape(len(segments), -1, 2, 3)
+    # NaN fails the comparison too
+    if not (np.abs(values[:, :, 0]) <= FARTHEST).all():
+        msg = f"an edge goes on for more than {FARTHEST:g} mm; mend it in CAD"
+        raise MouldError(msg)
     start, chord = values[:, 0, 0], values[:, -1, 0] - values[:, 0, 0]
     along = chord / np.maximum(np.linalg.norm(chord, axis=1), np.finfo(float).tiny)[:, None]
     offset, tangent = values[:, 1:-1, 0] - start[:, None], values[:, 1:-1, 1]
