@@ -55,7 +55,10 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
             largest.append(float(size.max()))
             if largest[-1] > LARGE and largest[-1] > 0.9 * largest[-ROUNDS:][0] and len(largest) >= ROUNDS:
                 number = ids[facets.nodes.face[facets.quads(edge[[size.argmax()]])[0][0]]]
-                msg = f"no facets follow face {number}, however small: its outline does not lie on it; mend it in CAD"
+                msg = (
+                    f"no facets follow face {number}, however small: it has a kink, or its outline does not lie on it; "
+                    f"mend it in CAD"
+                )
                 raise MouldError(msg)
         edge = edge[facets.apart(edge, np.floor(np.log(size) / np.log(SIZE_CLASS)) + random.random(len(size)))]
         if not len(edge):

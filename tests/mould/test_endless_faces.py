@@ -46,23 +46,28 @@ def angled_wall(corner: int) -> cq.Shape:
     n_knots = len(places) - 2
     knots, counts = TColStd_Array1OfReal(1, n_knots), TColStd_Array1OfInteger(1, n_knots)
     for n in range(1, n_knots + 1):
-        knots.SetValue(n, float(n))
+        knots.SetValue(n, n**1.3)  # so that no halving meets the kink
         counts.SetValue(n, 4 if n in (1, n_knots) else 1)
     edge = BRepBuilderAPI_MakeEdge(Geom_BSplineCurve(poles, knots, counts, 3)).Edge()
     return cq.Shape.cast(BRepPrimAPI_MakePrism(edge, gp_Vec(0, 0, 30)).Shape())
 
 
-@pytest.mark.parametrize("corner", [1, 2, 3])
-def test_a_kink_that_the_curve_does_not_tell_of(corner):
-    """Its segment turns by 90 degrees however short it is; the wall is developable, and its area known."""
+def size_of_wall(corner: int) -> tuple[float, int]:
+    mould = all_faces(angled_wall(corner), **COARSE)
+    return mould.surface.area, len(mould.triangles)
 
-    def size() -> tuple[float, int]:
-        mould = all_faces(angled_wall(corner), **COARSE)
-        return mould.surface.area, len(mould.triangles)
 
-    area, n_triangles = apart(size, SECONDS, MEMORY)
+@pytest.mark.parametrize("corner", [1, 2])
+def test_a_bend_however_sharp_is_followed(corner):
+    area, n_triangles = apart(lambda: size_of_wall(corner), SECONDS, MEMORY)
     assert area == pytest.approx(float(angled_wall(corner).Area()), rel=0.01)
     assert n_triangles < 400
+
+
+def test_a_kink_that_the_curve_does_not_tell_of():
+    """A diagonal over it turns by 90 degrees however short its segment of the edge is."""
+    with pytest.raises(MouldError, match="no facets follow face 1, however small: it has a kink"):
+        apart(lambda: size_of_wall(3), SECONDS, MEMORY)
 
 
 def test_an_edge_that_goes_on_for_ever(tmp_path):
@@ -71,6 +76,8 @@ def test_an_edge_that_goes_on_for_ever(tmp_path):
     # an end of the first curve of the outline
     at = re.search(r"B_SPLINE_CURVE_WITH_KNOTS\('',2,\((#\d+)", text)
     assert at is not None
-    path.write_text(re.sub(rf"{at[1]} = CARTESIAN_POINT\([^;]*;", f"{at[1]} = CARTESIAN_POINT('',(1.E+15,0.,0.));", text))
+    path.write_text(
+        re.sub(rf"{at[1]} = CARTESIAN_POINT\([^;]*;", f"{at[1]} = CARTESIAN_POINT('',(1.E+15,0.,0.));", text)
+    )
     with pytest.raises(meshdrape.MeshdrapeError, match=r"saddle\.step: .*; mend it in CAD"):
         meshdrape.read_mould(path)
