@@ -25,6 +25,8 @@ _LENGTH_C = ("sine", "bump", "ripple")  # c is a length there, elsewhere a slope
 
 # A wing shorter than this, or longer, mm, has its lengths in another unit than it says.
 SHORTEST_SPAN, LONGEST_SPAN = 100.0, 200e3
+# No number of a wing is larger, in whatever unit.
+LARGEST = 1e9
 
 _SIZES = ("span", "chord", "spar_height", "spacing")
 _TOP = ("unit", *_SIZES, "locking_angle_deg", "row_offset", "wing", "spar", "start")
@@ -204,7 +206,7 @@ def _shape(part: dict[str, Any], key: str, known: Any, where: str, mm: float) ->
         if parameter == key:
             continue
         if parameter == "metre" or parameter == "span":
-            msg = f"{where} {key} {name!r} does not take {parameter!r}"
+            msg = f"{where} {key} {name!r} does not take {_shown(parameter)}"
             raise DesignError(msg)
         power = (1 if name in _LENGTH_C else 0) if parameter == "c" else _POWER.get(parameter, 0)
         if isinstance(value, list):
@@ -227,7 +229,7 @@ def _gamma(start: dict[str, Any]) -> float | str:
     value = start.get("gamma_deg", 0.0)
     if isinstance(value, str):
         if value not in ("free", "best"):
-            msg = f'[start] gamma_deg = "{value}": give a number of degrees, "free" or "best"'
+            msg = f'[start] gamma_deg = {_shown(value)}: give a number of degrees, "free" or "best"'
             raise DesignError(msg)
         return value
     degrees = _real(value, "[start] gamma_deg")
@@ -293,7 +295,7 @@ def _check_profiles(design: Design) -> None:
 def _only(table: dict[str, Any], known: tuple[str, ...], where: str) -> None:
     for key in table:
         if key not in known:
-            msg = f"{where} has no key {key!r}: {', '.join(known)}"
+            msg = f"{where} has no key {_shown(key)}: {', '.join(known)}"
             raise DesignError(msg)
 
 
@@ -314,7 +316,7 @@ def _word(table: dict[str, Any], key: str, default: str | None, known: Any, wher
         msg = f"{where}{key} is missing; one of {', '.join(known)}"
         raise DesignError(msg)
     if not isinstance(value, str) or value not in known:
-        msg = f"{where}{key} = {value!r} is not known: {', '.join(known)}"
+        msg = f"{where}{key} = {_shown(value)} is not known: {', '.join(known)}"
         raise DesignError(msg)
     return value
 
@@ -332,9 +334,20 @@ def _number(table: dict[str, Any], key: str, default: float | None = None, *, po
 
 def _real(value: Any, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        msg = f"{what} = {value!r} is not a number"
+        msg = f"{what} = {_shown(value)} is not a number"
         raise DesignError(msg)
-    if not math.isfinite(value):
-        msg = f"{what} = {value!r} is not finite"
+    # NaN fails the comparison too, and whole numbers may be too long for a float
+    if not abs(value) <= LARGEST:
+        finite = isinstance(value, int) or math.isfinite(value)
+        msg = f"{what} = {_shown(value)} is {f'beyond {LARGEST:g}' if finite else 'not finite'}; check its unit"
         raise DesignError(msg)
     return float(value)
+
+
+def _shown(value: Any) -> str:
+    """A value as it stands in a message: whatever it is, in a few words."""
+    try:
+        text = repr(value)
+    except ValueError:  # a whole number of thousands of digits
+        return "a whole number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:56]} ..."
