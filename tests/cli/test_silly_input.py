@@ -76,7 +76,7 @@ def test_one_line_and_nothing_lost(capfd, folder, words, culprit):
 def test_the_mould_is_not_overwritten_by_a_companion_of_the_net(capfd, folder):
     """Draped from where a former run wrote it, NET.mould.ply would be the net's own mould."""
     (folder / "net.mould.ply").write_bytes(ply(PLATE))
-    message = refused(capfd, *"drape net.mould.ply -o net.ply --spacing 20".split())
+    message = refused(capfd, *["drape", "net.mould.ply", "-o", "net.ply", "--spacing", "20"])
     assert "net.mould.ply is read and would be overwritten" in message
     assert (folder / "net.mould.ply").read_bytes() == ply(PLATE)
     (folder / "curve.obj").write_text("v -50 0 0\nv 50 0 0\n")
@@ -86,7 +86,9 @@ def test_the_mould_is_not_overwritten_by_a_companion_of_the_net(capfd, folder):
 
 def test_a_folder_that_may_not_be_written_to_is_told_before_anything_is_read(capfd, folder, monkeypatch):
     monkeypatch.setattr(os, "access", lambda *_: False)
-    assert "not writable; choose another" in refused(capfd, *"drape missing.stl -o net.ply --spacing 9".split())
+    assert "not writable; choose another" in refused(
+        capfd, *["drape", "missing.stl", "-o", "net.ply", "--spacing", "9"]
+    )
 
 
 @pytest.mark.parametrize("direction", ["1e300,0,0", "1e-320,0,0", "1,1e-300,0"])
