@@ -222,3 +222,37 @@ def test_net_file(tmp_path, damage):
             assert net.cell_shear.shape == tuple(n - 1 for n in net.node_status.shape)
         assert time.perf_counter() - begun < SECONDS
     assert peak() < before + MORE_MEMORY
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("direction", b"[0.5, 0.1, -3.6e+299]", ""),
+        ("direction", b"[0, 0, 0]", "direction"),
+        ("seed", b"[1e+300, 0, 0]", "seed [1e+300, 0.0, 0.0] is not a point within 1e+12 mm"),
+        ("spacing", b"[5, 0]", "weft spacing is 0 mm"),
+        ("initial_angle_rad", b"1e300", "initial angle"),
+        ("locking_angle_rad", b'"wide"', "not a net that meshdrape wrote"),
+        ("warp_path", b"[[0, 0, 0], [1e300, 0, 0]]", "warp_path: point 2"),
+        ("warp_path", b"[[0, 0, 0], [0, 0, 400]]", "warp_path: point 2"),
+    ],
+)
+def test_net_of_numbers_that_no_net_has(capfd, tmp_path, name, value, told):
+    """What is said of it names its file, in one line; what is not refused does not hold."""
+    (tmp_path / "hills.off").write_bytes(off(MESH))
+    net = meshdrape.drape(meshdrape.read_mould(tmp_path / "hills.off"), meshdrape.Fabric(30.0))
+    meshdrape.write_ply(net, tmp_path / "net.ply")
+    head, end, rows = (tmp_path / "net.ply").read_bytes().partition(b"end_header")
+    lines = [line for line in head.split(b"\n") if not line.startswith(f"comment {name} ".encode())]
+    lines.insert(2, f"comment {name} ".encode() + value)
+    (tmp_path / "other.ply").write_bytes(b"\n".join(lines) + end + rows)
+    capfd.readouterr()
+    code = main(["audit", str(tmp_path / "other.ply"), "--edges", "3"])
+    out, err = capfd.readouterr()
+    if told:
+        assert (code, out, err.count("\n")) == (2, "", 1)
+        assert str(tmp_path / "other.ply") in err
+        assert told in err
+    else:
+        assert (code, err) == (3, "")
+        assert "does not hold" in out
