@@ -23,7 +23,7 @@ STEP, BREP = (".step", ".stp"), (".brep", ".brp")
 GIB: Final = 2**30
 # A file that takes longer than this to read, and so much longer a byte, is taken to hang; memory in bytes likewise.
 SECONDS_TO_READ, SECONDS_A_BYTE = 8.0, 1e-5
-MEMORY_TO_READ, MEMORY_A_BYTE = 2 * GIB, 2000
+MEMORY_TO_READ, MEMORY_A_BYTE = GIB, 1000
 # A script may compute for so long, a face or a round of refinement for so long: far longer than they take.
 SECONDS_TO_BUILD: Final = 600.0
 SECONDS_A_STEP: Final = 15.0

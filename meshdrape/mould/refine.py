@@ -17,10 +17,9 @@ MOST_DRIFT: Final = 0.1
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
 SIZE_CLASS: Final = 1.25
 MOST_TRIANGLES: Final = 2_000_000
-# The largest size falls from hundreds to one in some thirty rounds; where it has stayed above LARGE for so many, it
-# stays for ever, for edges on the outline are not split.
-ROUNDS: Final = 40
-LARGE: Final = 2.0
+# The largest size falls from hundreds to one in some thirty rounds; where it has not fallen for so many, it never will,
+# for edges on the outline are not split.
+ROUNDS: Final = 100
 
 Evaluate = Callable[[Ints, Floats], Nodes]
 
@@ -53,7 +52,7 @@ def refine(facets: Facets, tolerances: Tolerances, developable: Bools, evaluate:
         edge, size = edge[size > 1], size[size > 1]
         if len(edge):
             largest.append(float(size.max()))
-            if largest[-1] > LARGE and largest[-1] > 0.9 * largest[-ROUNDS:][0] and len(largest) >= ROUNDS:
+            if len(largest) >= ROUNDS and largest[-1] > 0.99 * largest[-ROUNDS]:
                 number = ids[facets.nodes.face[facets.quads(edge[[size.argmax()]])[0][0]]]
                 msg = (
                     f"no facets follow face {number}, however small: it has a kink, or its outline does not lie on it; "
