@@ -66,6 +66,7 @@ CELL: Final = np.dtype(
 GAP: Final = np.dtype([("i", "i4"), ("j", "i4"), ("length", "i4"), ("status", "u1")])
 SEAL: Final = np.dtype([("sha256", "u1", (32,))])
 _BALANCE: Final = ("predicted_shear_deg", "balance_residual_deg", "defect_deg")
+LONGEST: Final = 1.1  # a unit direction, and room for round-off
 _NODES_PER_BLOCK: Final = 1 << 16  # some 7 MB of rows
 
 
@@ -342,12 +343,18 @@ def _prescribed(net: Net) -> dict[str, Any]:
 
 
 def _require_places(node: Rows, arrays: list[FloatArray]) -> None:
-    """Raise ValueError for a node whose place or directions are no numbers, or beyond all measure."""
+    """Raise ValueError for a node whose place is none, or whose directions are longer than one.
+
+    A node alone has none, NaN.
+    """
     at = node["i"], node["j"]
-    limits = (("place", FARTHEST), ("warp direction", 1.1), ("weft direction", 1.1))
-    for array, (what, most) in zip(arrays, limits, strict=True):
-        # NaN fails the comparison too
-        wrong = np.flatnonzero(~(np.abs(array[at]) <= most).all(axis=1))
+    place, warp, weft = (np.abs(array[at]) for array in arrays)
+    for what, wrong_at in (
+        ("place", ~(place <= FARTHEST).all(axis=1)),  # NaN fails the comparison too
+        ("warp direction", (warp > LONGEST).any(axis=1)),
+        ("weft direction", (weft > LONGEST).any(axis=1)),
+    ):
+        wrong = np.flatnonzero(wrong_at)
         if len(wrong):
             msg = f"its node {int(at[0][wrong[0]])}, {int(at[1][wrong[0]])} has no {what}"
             raise ValueError(msg)

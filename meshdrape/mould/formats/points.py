@@ -73,7 +73,9 @@ def _indices(words: list[str], n_points: int, file: str, number: int) -> list[in
             return found
     except ValueError:
         pass
-    msg = f"{file}, line {number}: l {_shown(words)} names points it does not have; there are {n_points} before it"
+    msg = (
+        f"{file}, line {number}: l {_shown(words)[1:-1]} names points it does not have; there are {n_points} before it"
+    )
     raise FileError(msg)
 
 
