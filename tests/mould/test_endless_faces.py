@@ -66,7 +66,7 @@ def test_a_bend_however_sharp_is_followed(corner):
 
 def test_a_kink_that_the_curve_does_not_tell_of():
     """A diagonal over it turns by 90 degrees however short its segment of the edge is."""
-    with pytest.raises(MouldError, match="no facets follow face 1|cannot be draped"):
+    with pytest.raises(MouldError, match=r"no facets follow face 1|cannot be draped"):
         apart(lambda: size_of_wall(3), SECONDS, MEMORY)
 
 
