@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshdrape.cli.main import DONE, FABRIC_MISSING
 from meshdrape.cli.options import count, positive
-from meshdrape.errors import FileError, NetError
+from meshdrape.errors import FabricError, FileError, NetError, StartError
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -49,7 +49,12 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     stored = read_net(path)
     mould = _mould(path, stored, options.mould)
     seconds = math.inf if options.edges else options.seconds or SECONDS
-    found = recheck(mould, stored, options.edges, seconds)
+    try:
+        found = recheck(mould, stored, options.edges, seconds)
+    except (StartError, FabricError) as error:
+        # of a net that was laid neither would have come
+        msg = f"{path} is not the net that was laid on {mould.source}: {error}; drape anew"
+        raise NetError(msg) from error
     failures = list(found.failures)
     if not stored.sealed:
         failures.insert(0, "the file was changed after it was written")

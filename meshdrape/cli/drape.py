@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +24,11 @@ from meshdrape.cli.options import (
     read_path,
 )
 from meshdrape.cli.progress import Progress, compilation_told
+from meshdrape.errors import FileError, StartError
 
+# What is written beside NET.ply.
+MOULD, FIBRES, PICTURE, SUMMARY = ".mould.ply", ".fibres.ply", ".png", ".json"
+COMPANIONS = (MOULD, FIBRES, PICTURE, SUMMARY)
 # libigl's audit may take this long, s, and stops at this many edges.
 AUDIT_SECONDS, AUDIT_EDGES = 0.5, 1000
 
@@ -96,6 +103,10 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     check_target(net_path)
     # the other files take its name with their own suffixes: one of these would be written over it
     check_suffix(net_path, (".ply",), "a net")
+    companions = [net_path.with_suffix(suffix) for suffix in COMPANIONS if suffix != PICTURE or not options.no_picture]
+    for companion in companions:
+        check_target(companion)
+    _require_own_files([net_path, *companions], [options.mould, options.warp_path, options.weft_path])
     fabric = Fabric(options.spacing, options.initial_angle, options.locking_angle)
     warp_path, weft_path = read_path(options.warp_path), read_path(options.weft_path)
     clock = _Clock()
@@ -119,7 +130,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         progress.stage("draping")
         prepare()
         # each of these may compile kernels of its own on the first run
-        with compilation_told(options.quiet):
+        with compilation_told(options.quiet), _paths_named(options):
             net = drape(
                 mould,
                 fabric,
@@ -163,7 +174,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
             summary["refinement"] = refined.facts()
         from meshdrape.output import json_text, write_json
 
-        json_path = net_path.with_suffix(".json")
+        json_path = net_path.with_suffix(SUMMARY)
         write_json(summary, json_path)
     if options.json:
         sys.stdout.write(json_text(summary))
@@ -172,6 +183,28 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
         sys.stdout.write(drape_text(summary, [*files, json_path]))
     return FABRIC_MISSING if fabric_missing(net) else DONE
+
+
+def _require_own_files(targets: list[Path], given: list[str | None]) -> None:
+    """Raise FileError where a file of the results would take the place of one that is read."""
+    inputs = {os.path.realpath(name) for name in given if name is not None}
+    for target in targets:
+        if os.path.realpath(target) in inputs:
+            msg = f"{target} is read and would be overwritten by the net; give the net another name than {targets[0]}"
+            raise FileError(msg)
+
+
+@contextmanager
+def _paths_named(options: argparse.Namespace) -> Iterator[None]:
+    """Errors of a path told of the file it is in, by which its user knows it."""
+    try:
+        yield
+    except StartError as error:
+        text = str(error)
+        for name in ("warp", "weft"):
+            text = text.replace(f"{name}_turn", f"--{name}-turn-deg")
+            text = text.replace(f"{name}_path", getattr(options, f"{name}_path") or f"--{name}-path")
+        raise StartError(text) from error
 
 
 class _Clock:
@@ -195,9 +228,7 @@ class _Clock:
 def _write(net: Any, measures: Any, field: Any, foretold: Any, net_path: Path, picture: bool) -> list[Path]:
     from meshdrape.output import draw_net, write_fibres_ply, write_mould_ply, write_ply
 
-    mould_path, fibres_path, picture_path = (
-        net_path.with_suffix(suffix) for suffix in (".mould.ply", ".fibres.ply", ".png")
-    )
+    mould_path, fibres_path, picture_path = (net_path.with_suffix(suffix) for suffix in (MOULD, FIBRES, PICTURE))
     write_ply(net, net_path, measures, foretold)
     write_mould_ply(field, mould_path, net.fabric.locking_angle)
     write_fibres_ply(net, fibres_path)

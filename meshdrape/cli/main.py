@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
+import io
+import os
 import re
 import sys
 from collections.abc import Sequence
@@ -53,12 +56,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         130 interrupted.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
+    _make_printable()
     with interrupt.Remembered():
         try:
-            return _run(arguments)
+            code = _run(arguments)
+            sys.stdout.flush()
+            return code
         except SystemExit as stop:
             return int(stop.code or 0)
         except BrokenPipeError:
+            _drop_output()
             return DONE
         except KeyboardInterrupt:
             return _interrupted()
@@ -66,10 +73,42 @@ def main(argv: Sequence[str] | None = None) -> int:
             # a library interrupted while it is imported raises something of its own
             if interrupt.seen():
                 return _interrupted()
-            if not isinstance(error, MeshdrapeError):
+            message = _message(error)
+            if message is None:
                 raise
-            sys.stderr.write(f"meshdrape: {' '.join(str(error).split())}\n")
+            sys.stderr.write(f"meshdrape: {message}\n")
             return BAD_INPUT
+
+
+def _message(error: Exception) -> str | None:
+    """What to tell the user in one line; None for an error that is none of his."""
+    if isinstance(error, MeshdrapeError):
+        return " ".join(str(error).split())
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for this; a larger spacing, or a coarser or smaller mould, needs less"
+    # of every file its reader or writer says so itself
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO, errno.EBADF):
+        _drop_output()
+        return f"cannot write to the standard output: {error.strerror}; send it elsewhere"
+    return None
+
+
+def _make_printable() -> None:
+    """Let standard output and error take any name of a file, and be there even where they were closed."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - for as long as the process
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _drop_output() -> None:
+    """Nobody takes what is left of the output: the interpreter must not try again when it ends."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 def _interrupted() -> int:

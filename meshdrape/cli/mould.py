@@ -60,8 +60,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
 def _make(script: Script, options: argparse.Namespace) -> dict[str, Any]:
     """Make the mould, write it, and return what there is to say of it."""
-    from meshdrape.mould import export, library
-    from meshdrape.mould.brep import cad_faces
+    from meshdrape.mould import export
     from meshdrape.output.files import atomic_write, check_suffix, check_target
 
     target = Path(options.output)
@@ -69,23 +68,16 @@ def _make(script: Script, options: argparse.Namespace) -> dict[str, Any]:
     check_suffix(target, export.SUFFIXES, "a mould")
     check_target(target)
     parameters = parameters_set(options)
-    shape = library.build_shape(script.name, parameters)
-    mould = None
-    if suffix == ".stl":
-        mould = export.tessellated(shape, f"mould {script.name}", options.chord_tolerance, options.angle_tolerance)
-        content = export.stl_bytes(mould, script.name)
-    else:
-        content = export.brep_bytes(shape) if suffix in (".brep", ".brp") else export.step_bytes(shape, script.name)
+    made = export.make(script.name, parameters, suffix, options.chord_tolerance, options.angle_tolerance)
     with atomic_write(target) as file:
-        file.write(content)
-    faces = cad_faces(shape)
+        file.write(made.content)
     return {
         "mould": script.name,
         "file": str(target),
         "parameters": {one.name: one.value(parameters.get(one.name, one.default)) for one in script.parameters},
-        "size_mm": list(export.extents(shape)),
-        "area_mm2": sum(face.area for face in faces),
-        "triangles": None if mould is None else len(mould.triangles),
+        "size_mm": list(made.size),
+        "area_mm2": sum(face.area for face in made.cad_faces),
+        "triangles": made.n_triangles,
         "faces": [
             {
                 "id": face.id,
@@ -94,7 +86,7 @@ def _make(script: Script, options: argparse.Namespace) -> dict[str, Any]:
                 "area_mm2": face.area,
                 "developable": face.developable,
             }
-            for face in faces
+            for face in made.cad_faces
         ],
     }
 

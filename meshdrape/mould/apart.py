@@ -1,112 +1,150 @@
-"""A script's mould made in a process of its own: CadQuery alone takes seconds to import, time for other questions."""
+"""Work of C++ libraries done in a process of its own, where it may crash, hang or ask for all the memory.
+
+What a damaged file makes Open CASCADE do, nobody foresees. The process is forked, so that what is imported is there
+at once; what comes back through a pipe are plain arrays. It ends itself, by its timers and its memory, also when
+nobody is left to wait for it.
+"""
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import pickle
+import resource
 import signal
-import subprocess
 import sys
-import threading
-from collections.abc import Mapping
-from contextlib import suppress
-from dataclasses import replace
-from queue import SimpleQueue
-from types import TracebackType
-from typing import Any, Final
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Final, NoReturn, TypeVar
 
-from meshdrape.mould.library import build_script
-from meshdrape.mould.mould import Mould
-from meshdrape.mould.shape import cadquery_module
+from meshdrape.errors import MeshdrapeError
 
-# What is called there; the modules are found where this process found them.
-_SERVE: Final = "import sys; sys.path[:] = {path!r}; from meshdrape.mould.apart import serve; serve()"
+T = TypeVar("T")
+
+# Time of the processor is what is measured, for others may use it too; a process that sleeps ends after so many times
+# as long by the clock.
+PATIENCE: Final = 20
+_TIMERS: Final = (signal.SIGPROF, signal.SIGALRM)
+
+# Of a forked process: the address space it had when it was forked, bytes, and the seconds its work has at a time.
+_had: int | None = None
+_seconds = 0.0
 
 
-class ScriptApart:
-    """Another process for one :func:`meshdrape.mould.library.build_script`, begun before it is known what to ask.
+class DiedError(Exception):
+    """The process ended without an answer.
 
-    It ends when the block is left, and with this process however that ends.
+    Attributes
+    ----------
+    how : str
+        "crashes" or "hangs", as a word of a message.
     """
 
-    def __init__(self) -> None:
-        self._process: subprocess.Popen[bytes] | None = None
-        self._asked: tuple[str, dict[str, Any], float, float] | None = None
-        if "cadquery" in sys.modules:
-            return  # there is nothing to gain: the mould is made here when it is wanted
-        with suppress(OSError):  # where there are no other processes it is made here, too
-            self._process = subprocess.Popen(
-                [sys.executable, "-c", _SERVE.format(path=sys.path)],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-            )
-
-    def ask(self, name: str, parameters: Mapping[str, Any], chord_tolerance: float, angle_tolerance: float) -> None:
-        """Have it made; arguments as of ``build_script``."""
-        self._asked = (name, dict(parameters), chord_tolerance, angle_tolerance)
-        if self._process is not None:
-            assert self._process.stdin is not None
-            with suppress(OSError):  # it has ended: that is told when the mould is wanted
-                pickle.dump(self._asked, self._process.stdin)
-                self._process.stdin.flush()
-
-    def mould(self) -> Mould:
-        """Wait for the mould that was asked for; the errors are those of ``build_script``."""
-        assert self._asked is not None
-        if self._process is not None:
-            assert self._process.stdout is not None
-            made = self._process.stdout.read()
-            code = self._process.wait()
-            self.close()
-            if code == 0:
-                mould: Mould = pickle.loads(made)
-                return replace(mould)  # made anew, its arrays are read-only again
-        # whatever kept the other process from making it is told best by trying here
-        return build_script(*self._asked)
-
-    def close(self) -> None:
-        """End the process, if it still runs."""
-        process, self._process = self._process, None
-        if process is None:
-            return
-        process.kill()
-        process.wait()
-        for pipe in (process.stdin, process.stdout):
-            if pipe is not None:
-                with suppress(OSError):  # what was not sent before the process ended
-                    pipe.close()
-
-    def __enter__(self) -> ScriptApart:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
+    def __init__(self, how: str) -> None:
+        super().__init__(how)
+        self.how = how
 
 
-def serve() -> None:
-    """Make the mould that is asked for on standard input and write it to standard output; nothing of what fails."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks: it ends this one
-    answer = os.dup(1)
-    os.dup2(2, 1)  # what the script or Open CASCADE prints is no part of the answer
-    asked: SimpleQueue[tuple[str, dict[str, Any], float, float]] = SimpleQueue()
-    threading.Thread(target=_listen, args=(asked,), daemon=True).start()
+def apart(work: Callable[[], T], seconds: float, memory: int) -> T:
+    """What a function returns or raises, called in a process forked for it.
+
+    Where processes cannot be forked it is called in this one.
+
+    Parameters
+    ----------
+    work : callable
+        What it returns must be possible to pickle.
+    seconds : float
+        Of the processor, until it ends or calls :func:`step` or :func:`allow`.
+    memory : int
+        Bytes it may take on top of what this process has.
+
+    Raises
+    ------
+    DiedError
+        It crashes, hangs, or kills itself for want of memory.
+    """
+    if not hasattr(os, "fork"):
+        return work()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    answers, answer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        _work_and_exit(work, answer, seconds, memory)
+    os.close(answer)
+    status = None
     try:
-        cadquery_module()
-        made = pickle.dumps(build_script(*asked.get()), protocol=pickle.HIGHEST_PROTOCOL)
-    except Exception:
-        os._exit(1)
-    with os.fdopen(answer, "wb") as out:
-        out.write(made)
-    os._exit(0)
-
-
-def _listen(asked: SimpleQueue[tuple[str, dict[str, Any], float, float]]) -> None:
-    """Pass on what is asked; end with standard input: whoever asked is gone."""
-    try:
-        asked.put(pickle.load(sys.stdin.buffer))
-        sys.stdin.buffer.read()
+        with os.fdopen(answers, "rb") as pipe:
+            raised, value = pickle.load(pipe)
+    except (EOFError, pickle.UnpicklingError):
+        _, status = os.waitpid(child, 0)
+        timed_out = os.WIFSIGNALED(status) and os.WTERMSIG(status) in _TIMERS
+        raise DiedError("hangs" if timed_out else "crashes") from None
     finally:
-        os._exit(1)
+        if status is None:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+    if raised:
+        raise value
+    return value  # type: ignore[no-any-return]
+
+
+def allow(seconds: float, memory: int) -> None:
+    """Within :func:`apart`, give what follows so many seconds from now and so much memory; elsewhere do nothing."""
+    global _seconds
+    if _had is None:
+        return
+    _seconds = seconds
+    step()
+    if _had:
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        wanted = _had + memory
+        resource.setrlimit(resource.RLIMIT_AS, (wanted if hard == resource.RLIM_INFINITY else min(wanted, hard), hard))
+
+
+def step() -> None:
+    """Within :func:`apart`, begin the seconds anew, for something has got done; elsewhere do nothing."""
+    if _had is not None:
+        signal.setitimer(signal.ITIMER_PROF, _seconds)
+        signal.setitimer(signal.ITIMER_REAL, PATIENCE * _seconds)
+
+
+def _work_and_exit(work: Callable[[], object], answer: int, seconds: float, memory: int) -> NoReturn:
+    """The life of the forked process."""
+    global _had
+    try:
+        _had = _address_space()
+        # what a crash means here is known, and Ctrl-C is for the one who waits
+        faulthandler.disable()
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        for timer in _TIMERS:
+            signal.signal(timer, signal.SIG_DFL)
+        allow(seconds, memory)
+        with os.fdopen(answer, "wb") as pipe:
+            _answer(work, pipe)
+    finally:
+        os._exit(0)
+
+
+def _answer(work: Callable[[], object], pipe: IO[bytes]) -> None:
+    try:
+        said: tuple[bool, object] = (False, work())
+    except Exception as error:
+        if not isinstance(error, MeshdrapeError):
+            error.add_note("".join(traceback.format_exception(error)))  # its frames stay here
+        said = (True, error)
+    step()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    pickle.dump(said, pipe, protocol=pickle.HIGHEST_PROTOCOL)
+
+
+def _address_space() -> int:
+    """Bytes of address space in use; 0 where the system does not say."""
+    try:
+        return int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    except OSError:
+        return 0

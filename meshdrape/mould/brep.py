@@ -4,19 +4,58 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from meshdrape.errors import MouldError, SelectionError
+from meshdrape.mould.apart import step
 from meshdrape.mould.mould import CadFace, Mould
 from meshdrape.mould.patch import Patch, Tolerances
 from meshdrape.mould.shape import NamedShape
-from meshdrape.mould.tessellate import tessellate
+from meshdrape.mould.tessellate import Tessellation, tessellate
 
 # A facetted crease errs in direction by half the turn of a facet, and the net's shear by as much: this keeps it a
 # thirtieth of a locking angle of 7 degrees.
 ANGLE_TOLERANCE = math.radians(0.2)
 CHORD_TOLERANCE = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class CutFaces:
+    """The chosen faces of a B-rep cut into triangles: nothing of Open CASCADE is left in it.
+
+    Attributes
+    ----------
+    mesh : Tessellation
+    cad_faces : tuple of CadFace
+        The chosen ones.
+    tolerances : Tolerances
+    notes : tuple of str
+        What was done to them, one line each.
+    """
+
+    mesh: Tessellation
+    cad_faces: tuple[CadFace, ...]
+    tolerances: Tolerances
+    notes: tuple[str, ...]
+
+    def mould(self) -> Mould:
+        """The mould they make.
+
+        Raises
+        ------
+        MouldError
+            The triangles make no surface that can be draped.
+        """
+        mould = Mould.from_arrays(self.mesh.vertices, self.mesh.triangles)
+        return replace(
+            mould,
+            triangle_face=self.mesh.triangle_face,
+            cad_faces=self.cad_faces,
+            chord_tolerance=self.tolerances.chord,
+            angle_tolerance=self.tolerances.angle,
+            notes=(*self.notes, *(note for note in mould.notes if "no triangle" not in note)),
+        )
 
 
 def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
@@ -34,6 +73,7 @@ def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
             neighbours[number].update(other for other in numbers if other != number)
     listed = []
     for number, (face, name) in enumerate(zip(shape.faces, shape.names, strict=True), start=1):
+        step()
         patch = Patch(face.wrapped)
         middle = patch.middle
         listed.append(
@@ -51,14 +91,14 @@ def cad_faces(shape: NamedShape) -> tuple[CadFace, ...]:
     return tuple(listed)
 
 
-def brep_mould(
+def cut_faces(
     shape: NamedShape,
     origin: str,
     faces: str | Sequence[int] | None = None,
     chord_tolerance: float | None = None,
     angle_tolerance: float | None = None,
-) -> Mould:
-    """The mould of the chosen faces of a B-rep.
+) -> CutFaces:
+    """The chosen faces of a B-rep, cut into triangles.
 
     Parameters
     ----------
@@ -92,16 +132,20 @@ def brep_mould(
     listed = cad_faces(shape)
     chosen = select(shape, listed, faces, origin)
     picked, notes = _sewn([shape.faces[number - 1] for number in chosen])
-    mesh = tessellate([face.wrapped for face in picked], chosen, Tolerances(chord, angle))
-    mould = Mould.from_arrays(mesh.vertices, mesh.triangles)
-    return replace(
-        mould,
-        triangle_face=mesh.triangle_face,
-        cad_faces=tuple(listed[number - 1] for number in chosen),
-        chord_tolerance=chord,
-        angle_tolerance=angle,
-        notes=(*notes, *(note for note in mould.notes if "no triangle" not in note)),
-    )
+    tolerances = Tolerances(chord, angle)
+    mesh = tessellate([face.wrapped for face in picked], chosen, tolerances)
+    return CutFaces(mesh, tuple(listed[number - 1] for number in chosen), tolerances, notes)
+
+
+def brep_mould(
+    shape: NamedShape,
+    origin: str,
+    faces: str | Sequence[int] | None = None,
+    chord_tolerance: float | None = None,
+    angle_tolerance: float | None = None,
+) -> Mould:
+    """The mould of the chosen faces of a B-rep; see :func:`cut_faces`."""
+    return cut_faces(shape, origin, faces, chord_tolerance, angle_tolerance).mould()
 
 
 def select(
@@ -112,7 +156,7 @@ def select(
     Raises
     ------
     SelectionError
-        See :func:`brep_mould`.
+        See :func:`cut_faces`.
     """
     way_out = f"meshdrape inspect {origin} lists them"
     if faces is None:

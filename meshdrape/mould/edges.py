@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from meshdrape.errors import MouldError
+from meshdrape.mould.apart import step
+from meshdrape.mould.check import FARTHEST
 from meshdrape.mould.patch import Bools, Floats, Nodes, Patch, Tolerances
 
 if TYPE_CHECKING:
@@ -20,7 +22,9 @@ MOST_PROBES: Final = 33
 FEWEST_PROBES: Final = 5
 # Probes keep this share of a segment away from its ends, where the curve may have a kink.
 ASIDE: Final = 1 / 64
-MOST_NODES: Final = 200_000
+MOST_NODES: Final = 50_000
+# mm; what is smaller is not divided: a kink that the curve does not tell of, or a pole, would be for ever.
+SHORTEST: Final = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +71,7 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
     MouldError
         The tolerances ask for more nodes than any mould needs.
     """
+    step()
     curve, segments = _smooth_pieces(passages[0].edge)
     turn = tolerances.angle if _is_crease(passages, segments) else tolerances.gauss_angle
     done = [segments[:, 0], segments[-1:, 1]]
@@ -77,7 +82,7 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
         split = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
         for passage in passages:
             rest = np.flatnonzero(~split)
-            split[rest] = _metric_length(passage, at[rest]) > 1.0
+            split[rest] = _is_long(passage, at[rest])
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])
@@ -129,21 +134,32 @@ def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: flo
         curve.D1(t, point, derivative)
         rows.append(point.Coord() + derivative.Coord())
     values = np.array(rows).reshape(len(segments), -1, 2, 3)
+    # NaN fails the comparison too
+    if not (np.abs(values[:, :, 0]) <= FARTHEST).all():
+        msg = f"an edge goes on for more than {FARTHEST:g} mm; mend it in CAD"
+        raise MouldError(msg)
     start, chord = values[:, 0, 0], values[:, -1, 0] - values[:, 0, 0]
     along = chord / np.maximum(np.linalg.norm(chord, axis=1), np.finfo(float).tiny)[:, None]
     offset, tangent = values[:, 1:-1, 0] - start[:, None], values[:, 1:-1, 1]
     aside = offset - np.einsum("spi,si->sp", offset, along)[..., None] * along[:, None]
     speed = np.linalg.norm(tangent, axis=2)
     turned = np.einsum("spi,si->sp", tangent, along) < np.cos(direction) * speed
-    return np.asarray(((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1))
+    leaves = ((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1)
+    return np.asarray(leaves & _has_size(values[..., 0, :]))
 
 
-def _metric_length(passage: Passage, at: Floats) -> Floats:
-    """Length of segments on a face in its metric, (s,)."""
+def _is_long(passage: Passage, at: Floats) -> Bools:
+    """Whether segments are longer than a unit in the metric of a face, (s,)."""
     nodes = passage.nodes(at.ravel())
     uv, metric = nodes.uv.reshape(*at.shape, 2), nodes.metric.reshape(*at.shape, 3)
     (du, dv), (uu, uv_, vv) = (
         np.moveaxis(np.diff(uv, axis=1), 2, 0),
         np.moveaxis((metric[:, 1:] + metric[:, :-1]) / 2, 2, 0),
     )
-    return np.asarray(np.sqrt(np.maximum(uu * du**2 + 2 * uv_ * du * dv + vv * dv**2, 0.0)).sum(axis=1))
+    length = np.sqrt(np.maximum(uu * du**2 + 2 * uv_ * du * dv + vv * dv**2, 0.0)).sum(axis=1)
+    return np.asarray((length > 1.0) & _has_size(nodes.position.reshape(*at.shape, 3)))
+
+
+def _has_size(points: Floats) -> Bools:
+    """Whether the points along a segment, (s, p, 3), do not all lie in one place, (s,)."""
+    return np.asarray(np.linalg.norm(points - points[:, :1], axis=2).max(axis=1) > SHORTEST)

@@ -3,18 +3,76 @@
 from __future__ import annotations
 
 import io
-from typing import Final
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 
-from meshdrape.errors import FileError
-from meshdrape.mould.brep import brep_mould
-from meshdrape.mould.mould import Mould
+from meshdrape.errors import FileError, MouldError
+from meshdrape.mould import library
+from meshdrape.mould.brep import brep_mould, cad_faces
+from meshdrape.mould.cad import with_script
+from meshdrape.mould.mould import CadFace, Mould
 from meshdrape.mould.quiet import quiet
 from meshdrape.mould.shape import NamedShape
 
 SUFFIXES: Final = (".step", ".stp", ".brep", ".brp", ".stl")
 _FACET: Final = np.dtype([("normal", "<f4", (3,)), ("corner", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """A mould by one of the scripts that come with meshdrape, ready to be written.
+
+    Attributes
+    ----------
+    content : bytes
+        Of its file.
+    size : (x, y, z), mm
+    cad_faces : tuple of CadFace
+    n_triangles : int or None
+        Of an STL file.
+    """
+
+    content: bytes
+    size: tuple[float, float, float]
+    cad_faces: tuple[CadFace, ...]
+    n_triangles: int | None
+
+
+def make(
+    name: str,
+    parameters: Mapping[str, Any],
+    suffix: str,
+    chord_tolerance: float | None = None,
+    angle_tolerance: float | None = None,
+) -> Made:
+    """The file of a mould, of one of ``SUFFIXES``, in a process of its own.
+
+    Raises
+    ------
+    FileError
+        See :func:`meshdrape.mould.library.build_shape`; or the shape cannot be written.
+    MouldError
+        It cannot be cut into triangles, or a tolerance is out of range.
+    """
+    called = f"mould {name}"
+
+    def work(shape: NamedShape) -> Made:
+        n_triangles = None
+        if suffix == ".stl":
+            try:
+                mould = tessellated(shape, called, chord_tolerance, angle_tolerance)
+            except MouldError as error:
+                msg = f"{called}: {error}"
+                raise MouldError(msg) from error
+            content, n_triangles = stl_bytes(mould, name), len(mould.triangles)
+        else:
+            content = brep_bytes(shape) if suffix in (".brep", ".brp") else step_bytes(shape, name)
+        return Made(content, extents(shape), cad_faces(shape), n_triangles)
+
+    return with_script(library.script(name).path, library.checked_parameters(name, parameters), called, work)
 
 
 def tessellated(

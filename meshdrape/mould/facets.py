@@ -18,6 +18,7 @@ from typing import Final
 
 import numpy as np
 
+from meshdrape.mould.apart import step
 from meshdrape.mould.patch import Bools, Floats, Ints, Nodes
 
 # rad of opposite angles that a flip must gain, so that round-off cannot turn a diagonal to and fro.
@@ -81,6 +82,7 @@ class Facets:
         """Turn diagonals until all edges of the touched triangles are Delaunay, as far as (u, v) allows."""
         fan = len(self.triangles) if touched is None else 0
         for _ in range(MOST_ROUNDS + fan):
+            step()
             edge = self.inner_edges(touched)
             edge = edge[self._gains(edge)]
             edge = edge[self.apart(edge, self._random.random(len(edge)))]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import MouldError, missing_library
+from meshdrape.mould.apart import DiedError, apart
 from meshdrape.mould.check import Fault, as_arrays, counted, examine, without_unreferenced
 from meshdrape.mould.topology import (
     edge_joints,
@@ -32,6 +33,9 @@ NEEDLE: Final = 1e10
 MOST_ROUNDS: Final = 8
 # Points to a side of a changed triangle where the way to the other surface is measured.
 PROBES: Final = 5
+# MeshLab heals a thousand triangles in a hundredth of a second; with one far off its search may have no end.
+SECONDS, SECONDS_A_TRIANGLE = 20.0, 1e-3
+MEMORY: Final = 8 * 2**30
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,22 @@ class HealReport:
         if not changes:
             return "healing found nothing to repair"
         return f"healed: {', '.join(changes)}; the surface moved by {self.moved:.3g} mm at most"
+
+
+def heal_apart(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints, HealReport]:
+    """The same as :func:`heal`, in a process of its own: MeshLab crashes on some meshes, or searches for hours.
+
+    Raises
+    ------
+    MouldError
+        That too.
+    """
+    _pymeshlab()
+    try:
+        return apart(lambda: heal(vertices, triangles), SECONDS + SECONDS_A_TRIANGLE * len(triangles), MEMORY)
+    except DiedError as died:
+        msg = f"MeshLab {died.how} healing it; repair it in CAD, or leave out the triangles that lie far off"
+        raise MouldError(msg) from None
 
 
 def heal(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Floats, Ints, HealReport]:

@@ -122,20 +122,13 @@ def script(name: str) -> Script:
     return known[name]
 
 
-def build_shape(name: str, parameters: Mapping[str, Any] | None = None) -> NamedShape:
-    """The B-rep that a script makes, its faces named.
-
-    Parameters
-    ----------
-    name : str
-        Of the script: "wing_spar", ...
-    parameters : mapping, optional
-        Numbers, words or truth values by name; lengths in mm. A table may be a pair of sequences (y, g).
+def checked_parameters(name: str, parameters: Mapping[str, Any] | None) -> dict[str, Any]:
+    """The parameters of a script as it takes them.
 
     Raises
     ------
     FileError
-        No such mould or parameter, or parameters that make no mould; one line that lists the known ones or says why.
+        No such mould or parameter, or one that is not finite.
     """
     chosen = script(name)
     texts = {parameter.name for parameter in chosen.parameters if isinstance(parameter.default, str)}
@@ -152,9 +145,28 @@ def build_shape(name: str, parameters: Mapping[str, Any] | None = None) -> Named
         if not isinstance(parameter.default, str) and _is_endless(words.get(parameter.name)):
             msg = f"mould {name}: {parameter.name}={words[parameter.name]} is not a finite number"
             raise FileError(msg)
+    return words
+
+
+def build_shape(name: str, parameters: Mapping[str, Any] | None = None) -> NamedShape:
+    """The B-rep that a script makes, its faces named: in this process, which a shape that cannot be may bring down.
+
+    Parameters
+    ----------
+    name : str
+        Of the script: "wing_spar", ...
+    parameters : mapping, optional
+        Numbers, words or truth values by name; lengths in mm. A table may be a pair of sequences (y, g).
+
+    Raises
+    ------
+    FileError
+        No such mould or parameter, or parameters that make no mould; one line that lists the known ones or says why.
+    """
     from meshdrape.mould.script import run_script
 
-    return run_script(chosen.path, words, f"mould {name}")
+    words = checked_parameters(name, parameters)
+    return run_script(script(name).path, words, f"mould {name}")
 
 
 def build_script(
@@ -170,7 +182,7 @@ def build_script(
     name, parameters
         See :func:`build_shape`.
     chord_tolerance, angle_tolerance : float, optional
-        mm and rad; see :func:`meshdrape.mould.brep.brep_mould`.
+        mm and rad; see :func:`meshdrape.mould.brep.cut_faces`.
 
     Returns
     -------
@@ -187,12 +199,11 @@ def build_script(
     MouldError
         A tolerance is out of range, or the surface cannot be draped.
     """
-    from meshdrape.mould.brep import brep_mould
+    from meshdrape.mould.cad import script_mould
     from meshdrape.mould.files import file_sha256
 
-    shape = build_shape(name, parameters)
-    mould = brep_mould(shape, f"mould {name}", None, chord_tolerance, angle_tolerance)
-    source = script(name).path
+    words, source = checked_parameters(name, parameters), script(name).path
+    mould = script_mould(source, words, None, chord_tolerance, angle_tolerance, f"mould {name}")
     return replace(mould, source=source, sha256=file_sha256(source))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -134,10 +135,10 @@ def read_mesh_mould(path: str | os.PathLike[str], unit: str | None = None, heal:
     healing: HealReport | None = None
     try:
         if heal:
-            from meshdrape.mould.heal import heal as healed
+            from meshdrape.mould.heal import heal_apart
 
             factor = millimetres(unit or "mm")
-            vertices, triangles, healing = healed(factor * vertices, triangles)
+            vertices, triangles, healing = heal_apart(factor * vertices, triangles)
             mould = replace(Mould.from_arrays(vertices, triangles), unit=unit or "mm")
         else:
             mould = Mould.from_arrays(vertices, triangles, unit or "mm")
@@ -150,10 +151,19 @@ def read_mesh_mould(path: str | os.PathLike[str], unit: str | None = None, heal:
 def _polygons(file: Path, read: Callable[[bytes], Polygons]) -> Polygons:
     kind = file.suffix[1:].upper()
     try:
-        return read(file.read_bytes())
+        return read(_without_mark(file.read_bytes()))
     except OSError as error:
         msg = f"{file} cannot be read: {error.strerror}"
         raise FileError(msg) from error
     except (ValueError, OverflowError) as error:
         msg = f"{file} is not a whole {kind} file ({brief(error)}); export it anew"
         raise FileError(msg) from error
+
+
+def _without_mark(content: bytes) -> bytes:
+    """The content without the byte order mark that some editors put before text; ValueError for text of UTF-16."""
+    # the header of a binary STL file may begin with anything, but holds no text of two bytes a letter
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) and content[2:80].count(0) > 30:
+        msg = "it is text in UTF-16; save it in UTF-8 or ASCII"
+        raise ValueError(msg)
+    return content.removeprefix(codecs.BOM_UTF8)

@@ -1,48 +1,14 @@
-"""Open CASCADE kept from the terminal, from crashing this process, and from being interrupted half-way."""
+"""Open CASCADE kept from the terminal, and from being interrupted half-way."""
 
 from __future__ import annotations
 
-import faulthandler
 import os
-import resource
 import signal
 import sys
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-
-
-def survives(action: Callable[[], object], seconds: float) -> bool:
-    """Whether C++ code comes back at all: tried in a process of its own, which noise may crash or hang.
-
-    Exceptions count as coming back. Where processes cannot be forked, nothing is tried.
-    """
-    if not hasattr(os, "fork"):
-        return True
-    sys.stdout.flush()
-    sys.stderr.flush()
-    child = os.fork()
-    if child == 0:
-        try:
-            # what a crash means here is known
-            faulthandler.disable()
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            with quiet():
-                action()
-        finally:
-            os._exit(0)
-    deadline = time.monotonic() + seconds
-    while True:
-        done, status = os.waitpid(child, os.WNOHANG)
-        if done:
-            return os.WIFEXITED(status)
-        if time.monotonic() > deadline:
-            os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
-            return False
-        time.sleep(0.005)
 
 
 @contextmanager

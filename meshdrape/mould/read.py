@@ -8,12 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from meshdrape.errors import FileError, MouldError
-from meshdrape.mould.files import brief, existing_file, file_sha256
+from meshdrape.errors import FileError
+from meshdrape.mould.cad import BREP, STEP, file_mould, script_mould
+from meshdrape.mould.files import existing_file, file_sha256
 from meshdrape.mould.meshfile import read_mesh_mould
 from meshdrape.mould.mould import Mould
 
-STEP, BREP, SCRIPT = (".step", ".stp"), (".brep", ".brp"), (".py",)
+SCRIPT = (".py",)
 MESH = (".stl", ".obj", ".ply", ".off")
 
 
@@ -38,7 +39,7 @@ def read_mould(
     chord_tolerance : float, mm, optional
         Default 0.1.
     angle_tolerance : float, rad, optional
-        Default 0.2 degrees; see :func:`meshdrape.mould.brep.brep_mould`.
+        Default 0.2 degrees; see :func:`meshdrape.mould.brep.cut_faces`.
     heal : bool
         Repair a mesh file; ``Mould.healing`` says what that changed.
     parameters : mapping, optional
@@ -77,29 +78,10 @@ def read_mould(
         msg = f"{file} is no mesh file: --heal repairs meshes; mend a B-rep in CAD"
         raise FileError(msg)
 
-    from meshdrape.mould.brep import brep_mould
-    from meshdrape.mould.shape import read_brep, read_step
-
     if suffix in SCRIPT:
-        from meshdrape.mould.script import run_script
-
-        shape = run_script(file, parameters)
+        mould = script_mould(file, parameters, faces, chord_tolerance, angle_tolerance)
     else:
-        shape = read_step(file) if suffix in STEP else read_brep(file)
-    try:
-        mould = brep_mould(shape, str(file), faces, chord_tolerance, angle_tolerance)
-    except MouldError as error:
-        msg = f"{file}: {error}"
-        raise MouldError(msg) from error
-    except (ValueError, ArithmeticError, LookupError, MemoryError) as error:
-        # what a damaged file holds in place of geometry nobody foresees
-        msg = f"{file}: its faces cannot be cut into triangles ({brief(error)}); mend them in CAD"
-        raise MouldError(msg) from error
-    except Exception as error:
-        if not type(error).__module__.startswith("OCP"):  # Open CASCADE's own have no base class in common
-            raise
-        msg = f"{file}: Open CASCADE cannot work out its faces ({type(error).__name__}); mend them in CAD"
-        raise MouldError(msg) from error
+        mould = file_mould(file, faces, chord_tolerance, angle_tolerance)
     given = tuple((parameters or {}).items())
     return replace(mould, source=file, sha256=file_sha256(file), parameters=given)
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import FileError, missing_library
-from meshdrape.mould.quiet import quiet, survives, uninterrupted
-
-# A file that takes longer than this to read, and so much longer a byte, is taken to hang.
-SECONDS_TO_READ, SECONDS_A_BYTE = 15.0, 1e-5
+from meshdrape.mould.quiet import quiet, uninterrupted
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +49,6 @@ def read_step(path: Path) -> NamedShape:
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPControl import STEPControl_Reader
 
-    def attempt() -> None:
-        trial = STEPControl_Reader()
-        if trial.ReadFile(str(path)) == IFSelect_ReturnStatus.IFSelect_RetDone:
-            trial.TransferRoots()
-            _look_at(cq.Shape.cast(trial.OneShape()))
-
-    _require_survival(path, attempt)
     shape = None
     with quiet():
         reader = STEPControl_Reader()
@@ -97,7 +86,6 @@ def read_brep(path: Path) -> NamedShape:
     if not _is_whole(content):
         msg = f"{path} is cut short; export it anew"
         raise FileError(msg)
-    _require_survival(path, lambda: _look_at(cq.Shape.importBrep(str(path))))
     try:
         with quiet():
             whole = cq.Shape.importBrep(str(path))
@@ -105,21 +93,6 @@ def read_brep(path: Path) -> NamedShape:
         msg = f"{path} cannot be read as BREP ({type(error).__name__}); export it anew"
         raise FileError(msg) from error
     return of_shape(whole, path)
-
-
-def _look_at(shape: Any) -> None:
-    """Evaluate every face somewhere: Open CASCADE reads some damaged ones and crashes on them, or hangs, afterwards."""
-    from meshdrape.mould.patch import Patch
-
-    for face in shape.Faces():
-        Patch(face.wrapped).middle  # noqa: B018 - what it is does not matter
-
-
-def _require_survival(path: Path, attempt: Callable[[], object]) -> None:
-    """Raise FileError for a file damaged so that Open CASCADE crashes on it, or hangs."""
-    if not survives(attempt, SECONDS_TO_READ + SECONDS_A_BYTE * path.stat().st_size):
-        msg = f"{path} is damaged: Open CASCADE crashes or hangs reading it; export it anew"
-        raise FileError(msg)
 
 
 def _is_whole(brep: bytes) -> bool:

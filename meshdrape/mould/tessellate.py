@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from meshdrape.errors import MouldError
+from meshdrape.mould.apart import step
 from meshdrape.mould.check import FARTHEST
 from meshdrape.mould.facets import Facets
 from meshdrape.mould.outline import Outline, Outlines
@@ -65,8 +66,11 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
     MouldError
         The outline of a face crosses itself, or the tolerances ask for too many triangles.
     """
-    patches = [Patch(face, index, tolerances) for index, face in enumerate(faces)]
-    for patch, number in zip(patches, ids, strict=True):
+    patches = []
+    for index, (face, number) in enumerate(zip(faces, ids, strict=True)):
+        step()
+        patch = Patch(face, index, tolerances)
+        patches.append(patch)
         # of a face without an outline only the parameters end
         if not patch.extent <= FARTHEST:
             msg = f"face {number} goes on for more than {FARTHEST:g} mm: its outline is missing; mend it in CAD"
@@ -83,6 +87,7 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
     facets.make_delaunay()
 
     def evaluate(face: Ints, uv: Floats) -> Nodes:
+        step()
         order = np.argsort(face, kind="stable")
         indices, first = np.unique(face[order], return_index=True)
         parts = np.split(order, first[1:])
@@ -91,7 +96,7 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
         back[order] = np.arange(len(order))
         return found[back]
 
-    refine(facets, tolerances, np.array([patch.developable for patch in patches]), evaluate)
+    refine(facets, tolerances, np.array([patch.developable for patch in patches]), evaluate, ids)
     vertices, triangles, face = _assembled(
         facets, patches, outlines.position, np.concatenate([r.number for r in rings])
     )
@@ -101,8 +106,11 @@ def tessellate(faces: Sequence[TopoDS_Face], ids: Sequence[int], tolerances: Tol
 def _cut(patches: list[Patch], outlines: Outlines, ids: Sequence[int]) -> tuple[list[Outline], list[Ints]]:
     """The outline of each face and the triangles it is cut into."""
     for _ in range(MOST_ATTEMPTS):
-        rings = [outlines.outline(patch.index) for patch in patches]
-        cuts = [ring.triangles() for ring in rings]
+        rings, cuts = [], []
+        for patch in patches:
+            step()
+            rings.append(outlines.outline(patch.index))
+            cuts.append(rings[-1].triangles())
         crossed = [index for index, cut in enumerate(cuts) if cut is None]
         if not crossed:
             return rings, [cut for cut in cuts if cut is not None]

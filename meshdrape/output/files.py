@@ -1,7 +1,9 @@
 """Files that are there whole or not at all."""
 
 import errno
+import fcntl
 import os
+import re
 import secrets
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -18,8 +20,9 @@ _DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS}
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """Open a binary file that appears under its name when the block ends well, and never otherwise.
 
-    The bytes go to a hidden file beside the target, which is renamed at the end. Whatever ends the block
-    early, Ctrl-C too, removes it, and a file that stood at `path` before is left as it was.
+    The bytes go to a hidden file beside the target, `.NAME.xxxxxxxx.part`, which is renamed at the end. Whatever
+    ends the block early, Ctrl-C too, removes it, and a file that stood at `path` before is left as it was. What a
+    process that was killed left there is removed by the next that writes the same file.
 
     Parameters
     ----------
@@ -34,9 +37,9 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """
     check_target(path)
     target = Path(os.path.realpath(path))
-    partial = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    _sweep(target)
     try:
-        file = partial.open("xb")
+        file, partial = _partial(target)
     except OSError as error:
         raise FileError(_refusal(path, target, error)) from None
     try:
@@ -53,12 +56,43 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
             partial.unlink()
 
 
+def _partial(target: Path) -> tuple[BinaryIO, Path]:
+    """A hidden file beside the target, open for writing and locked for as long as its process lives."""
+    while True:
+        partial = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+        file = partial.open("xb")
+        with suppress(OSError):  # a file system without locks: nothing is swept there either
+            fcntl.flock(file, fcntl.LOCK_EX)
+        # swept away by another before it was locked
+        if os.fstat(file.fileno()).st_nlink:
+            return file, partial
+        file.close()
+
+
+def _sweep(target: Path) -> None:
+    """Remove what processes that are no more left of this file; who still writes one holds its lock."""
+    ours = re.compile(rf"\.{re.escape(target.name)}\.[0-9a-f]{{8}}\.part")
+    for left in target.parent.iterdir():
+        if ours.fullmatch(left.name):
+            with suppress(OSError), left.open("r+b") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                left.unlink()
+
+
 def check_target(path: str | os.PathLike[str]) -> None:
     """Raise FileError now if a file could not be written under this name later."""
     target = Path(os.path.realpath(path))
+    try:
+        target.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except OSError as error:  # too long a name, a ring of links
+        raise FileError(_refusal(path, target, error)) from None
     if not target.parent.is_dir():
         msg = f"cannot write {path}: the folder {target.parent} does not exist; create it or choose another"
         raise FileError(msg)
+    if not os.access(target.parent, os.W_OK | os.X_OK):
+        raise FileError(_refusal(path, target, PermissionError()))
     if target.is_dir():
         msg = f"cannot write {path}: it is a folder; give the name of a file in it"
         raise FileError(msg)

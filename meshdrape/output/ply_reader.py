@@ -3,12 +3,12 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 import numpy as np
 
 from meshdrape.errors import FileError
+from meshdrape.mould.files import existing_file
 from meshdrape.output.ply import Rows
 
 _TYPE_CODE: Final = {
@@ -58,19 +58,9 @@ def read_ply(path: str | os.PathLike[str]) -> PlyFile:
     FileError
         The file is missing, not a binary PLY, truncated, or has lists of differing lengths.
     """
-    try:
-        with Path(path).open("rb") as file:
-            header = _read_header(path, file)
-            return PlyFile(tuple(header.comments), _map_elements(path, file, header))
-    except FileNotFoundError:
-        msg = f"{path} does not exist; check the name"
-        raise FileError(msg) from None
-    except IsADirectoryError:
-        msg = f"{path} is a folder; give the name of a PLY file in it"
-        raise FileError(msg) from None
-    except PermissionError:
-        msg = f"{path} may not be read; change its permissions"
-        raise FileError(msg) from None
+    with existing_file(path, "PLY").open("rb") as file:
+        header = _read_header(path, file)
+        return PlyFile(tuple(header.comments), _map_elements(path, file, header))
 
 
 @dataclass

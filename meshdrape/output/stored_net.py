@@ -6,21 +6,27 @@ import hashlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.errors import NetError
+from meshdrape.errors import MeshdrapeError, NetError
+from meshdrape.mould.check import FARTHEST
+from meshdrape.mould.files import brief
 from meshdrape.output.columns import POSITION
 from meshdrape.output.comments import from_comments
 from meshdrape.output.net_elements import BALANCE, PRESCRIBED, WARP, WEFT, blocks
+from meshdrape.output.ply import Rows
 from meshdrape.output.ply_reader import PlyFile, read_ply
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.prescribed import StartFibres, prescribe
 from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
+
+# A unit direction, and room for round-off.
+LONGEST: Final = 1.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +116,31 @@ def read_net(path: str | os.PathLike[str]) -> StoredNet:
     ply = read_ply(path)
     try:
         return _stored_net(Path(path), ply)
-    except (KeyError, ValueError, IndexError, TypeError, AttributeError, OverflowError) as error:
-        msg = f"{path} is not a net that meshdrape wrote ({_reason(error)}); give the NET.ply of a drape"
+    except (KeyError, ValueError, IndexError, TypeError, AttributeError, OverflowError, MeshdrapeError) as error:
+        msg = f"{path} is not a net that meshdrape wrote ({brief(_reason(error))}); give the NET.ply of a drape"
         raise NetError(msg) from None
 
 
 def _reason(error: Exception) -> str:
     return f"it has no {error.args[0]}" if isinstance(error, KeyError) else str(error)
+
+
+def _require_places(node: Rows, arrays: list[FloatArray]) -> None:
+    """Raise ValueError for a node whose place is none, or whose directions are longer than one.
+
+    A node alone has none, NaN.
+    """
+    at = node["i"], node["j"]
+    place, warp, weft = (np.abs(array[at]) for array in arrays)
+    for what, wrong_at in (
+        ("place", ~(place <= FARTHEST).all(axis=1)),  # NaN fails the comparison too
+        ("warp direction", (warp > LONGEST).any(axis=1)),
+        ("weft direction", (weft > LONGEST).any(axis=1)),
+    ):
+        wrong = np.flatnonzero(wrong_at)
+        if len(wrong):
+            msg = f"its node {int(at[0][wrong[0]])}, {int(at[1][wrong[0]])} has no {what}"
+            raise ValueError(msg)
 
 
 def _number(value: Any) -> float | None:
@@ -140,8 +164,11 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
     n_warp, n_weft = made["nodes"]
     seed, direction = (np.array(made[name], dtype=np.float64) for name in ("seed", "direction"))
     origin = (int(made["seed_index"][0]), int(made["seed_index"][1]))
-    if not (seed.shape == direction.shape == (3,) and np.isfinite([seed, direction]).all() and direction.any()):
+    if not (seed.shape == direction.shape == (3,) and np.isfinite(direction).all() and direction.any()):
         msg = "its seed or direction is none"
+        raise ValueError(msg)
+    if not (np.abs(seed) <= FARTHEST).all():
+        msg = f"its seed {seed.tolist()} is not a point within {FARTHEST:g} mm"
         raise ValueError(msg)
     if not (0 <= origin[0] < n_warp and 0 <= origin[1] < n_weft):
         msg = f"its seed has the index {origin} in {n_warp} x {n_weft} nodes"
@@ -160,6 +187,7 @@ def _stored_net(path: Path, ply: PlyFile) -> StoredNet:
         for array, names in zip(arrays, (POSITION, WARP, WEFT), strict=True):
             for k, name in enumerate(names):
                 array[(*at, k)] = rows[name]
+    _require_places(node, arrays)
     flat = status.ravel()
     for i, j, length, value in gap[["i", "j", "length", "status"]].tolist():
         flat[i * n_weft + j : i * n_weft + j + length] = value

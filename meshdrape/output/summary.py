@@ -30,7 +30,9 @@ def write_json(summary: Mapping[str, Any], path: str | os.PathLike[str]) -> None
 
 def json_text(summary: Mapping[str, Any]) -> str:
     """Return the JSON text of a summary, with a newline at its end."""
-    return json.dumps(_plain(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    text = json.dumps(_plain(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    # the name of a file need not be Unicode: what stands for its bytes is escaped as JSON has it
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _plain(value: Any) -> Any:

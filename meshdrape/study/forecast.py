@@ -23,6 +23,8 @@ FloatArray = NDArray[np.float64]
 RECTANGLES = 900
 # A mould across a spacing fewer times than this has no rectangles to speak of.
 FEWEST = 8.0
+# Nor does one this many times as long as its rectangles are wide: a thread, of whatever length, takes no longer.
+MOST = 2000.0
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,7 @@ def forecast(
     if extent is not None:
         bounded = min(bounded, (extent[0] + extent[1]) * (extent[2] + extent[3]))
     wide = min(float(np.sqrt(bounded / RECTANGLES)), mould.surface.diagonal / FEWEST)
+    wide = max(wide, mould.surface.diagonal / MOST)
     spacing = (max(wide, fabric.warp_spacing), max(wide, fabric.weft_spacing))
     net = drape(mould, Fabric(spacing, fabric.initial_angle, fabric.locking_angle), seed, direction, extent=extent,
                 threads=1)  # fmt: skip

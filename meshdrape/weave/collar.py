@@ -214,9 +214,23 @@ def _fill(surface: Surface, loop: IntArray, first: int) -> tuple[FloatArray, Int
     fan = np.stack([np.full(len(rim), first), rim, np.roll(rim, -1)], axis=1)
     if size > 0 and (doubled @ normal < 1e-9 * size * size / len(rim)).any():
         ears = _triangulate(points - middle, normal / size)
-        if ears is not None:
+        if ears is not None and not _repeats_edge(surface, rim, rim[ears]):
             return np.empty((0, 3)), rim[ears]
     return middle[None], fan
+
+
+def _repeats_edge(surface: Surface, rim: IntArray, ears: IntArray) -> bool:
+    """Whether a diagonal across a hole joins vertices that the mould joins already, round the outside of the hole."""
+    n = len(surface.vertices)
+    at_rim = np.zeros(n, dtype=bool)
+    at_rim[rim] = True
+    keys = []
+    for triangles in (surface.faces, ears):
+        tail, head = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+        beside = at_rim[tail] & at_rim[head]
+        keys.append(tail[beside] * n + head[beside])
+    # the rim itself the mould runs through the other way
+    return bool(np.isin(keys[1], keys[0]).any())
 
 
 def _triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
+from meshdrape.mould.check import FARTHEST
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.lay import lay, trim
@@ -117,8 +118,9 @@ def drape(
     if seed is None:
         seed = whole.closest_point(default_seed(whole) if drawn is None else drawn[0])[0].position(whole)
     seed = np.asarray(seed, dtype=np.float64)
-    if seed.shape != (3,) or not np.isfinite(seed).all():
-        msg = f"seed {seed.tolist()} is not a point; give X,Y,Z in mm"
+    # NaN fails the comparison too
+    if seed.shape != (3,) or not (np.abs(seed) <= FARTHEST).all():
+        msg = f"seed {seed.tolist()} is not a point within {FARTHEST:g} mm; give X,Y,Z in mm"
         raise StartError(msg)
     longest = fabric.longest
     point, distance = whole.closest_point(seed)

@@ -78,6 +78,7 @@ def read_off(measures: Measures, reference: ArrayLike = (1.0, 0.0, 0.0), most_tr
     if axis.shape != (3,) or not np.isfinite(axis).all() or not axis.any():
         msg = f"reference axis {axis.tolist()} is no direction: give three numbers that are not all zero"
         raise StartError(msg)
+    axis = axis / np.abs(axis).max()  # so that no square is beyond all numbers
     axis = axis / np.linalg.norm(axis)
     mould, mesh, fabric = net.mould, net.surface.unfolding, net.fabric
     total = mould.surface.area

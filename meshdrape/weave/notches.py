@@ -61,7 +61,11 @@ class _Border:
         # of the face inside the edge that starts at each vertex
         self.normal = [surface.face_normal[face] for face in (loop // 3).tolist()]
         self.left = n
-        self.edges = {tuple(sorted(edge)) for edge in zip(self.vertex, np.roll(tail, -1).tolist(), strict=True)}
+        # a filling must not join what the mould joins already, be it elsewhere
+        here = np.zeros(len(surface.vertices), dtype=bool)
+        here[tail] = True
+        ends = np.sort(np.stack([surface.faces, surface.faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2), axis=1)
+        self.edges = set(map(tuple, ends[here[ends].all(axis=1)].tolist()))
 
     def fill(self, width: float, narrow: list[int]) -> list[tuple[int, int, int]]:
         """Fill notches up to a width, beginning at places that may have one; the triangles."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import StartError
+from meshdrape.mould.check import FARTHEST
 from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.crease import crease_edges
 from meshdrape.weave.fabric import Fabric
@@ -91,9 +92,13 @@ def _points(path: ArrayLike, name: str) -> FloatArray:
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2:
         msg = f"{name} has the shape {points.shape}; give at least two points as (n, 3), in mm"
         raise StartError(msg)
-    wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    # NaN fails the comparison too
+    wrong = np.flatnonzero(~(np.abs(points) <= FARTHEST).all(axis=1))
     if len(wrong):
-        msg = f"{name}: point {wrong[0] + 1} is {points[wrong[0]].tolist()}; every coordinate must be a number"
+        msg = (
+            f"{name}: point {wrong[0] + 1} is {points[wrong[0]].tolist()}; every coordinate must be a number within "
+            f"{FARTHEST:g} mm"
+        )
         raise StartError(msg)
     points.setflags(write=False)
     return points

@@ -110,11 +110,13 @@ def unit_direction(direction: ArrayLike) -> FloatArray:
         If it is zero or not finite.
     """
     along = np.asarray(direction, dtype=np.float64)
-    size = float(np.linalg.norm(along)) if along.shape == (3,) else math.nan
-    if not (math.isfinite(size) and size > 0):
+    largest = float(np.abs(along).max()) if along.shape == (3,) else math.nan
+    if not (math.isfinite(largest) and largest > 0):
         msg = f"direction {_triple(along)} is no direction: give three numbers that are not all zero"
         raise StartError(msg)
-    return np.asarray(along / size)
+    # the square of a large number may be beyond all numbers, that of a small one nothing
+    along = along / largest
+    return np.asarray(along / np.linalg.norm(along))
 
 
 def _in_face(surface: Surface, face: int, x: float, y: float, along: FloatArray, initial_angle: float) -> SeedStar:

@@ -103,7 +103,7 @@ BAD = {
     "plane.csv": ("# x y\n0,0\n1,1\n", "plane.csv, line 2: '0 0' is no point"),
     "nan.txt": ("0 0 0\n1 nan 3\n", "nan.txt, line 2"),
     "one.txt": ("0 0 0\n", "has 1 points"),
-    "empty.txt": ("", "has 0 points"),
+    "empty.txt": ("", "is empty; export the curve anew"),
     "beyond.obj": ("v 0 0 0\nv 1 1 1\nl 1 3\n", "beyond.obj, line 3: l 1 3"),
     "zero.obj": ("v 0 0 0\nv 1 1 1\nl 0 1\n", "zero.obj, line 3"),
     "short.obj": ("v 0 0\nv 1 1 1\n", "short.obj, line 1"),
@@ -126,7 +126,7 @@ def test_bad_file_is_named_with_its_line(wing, tmp_path, capfd, name):
     [
         (("--weft-turn-deg", "steep"), "'steep' is not an angle in degrees"),
         (("--warp-turn-deg", "10"), "the warp meets no crease to turn at"),
-        (("--warp-path", "missing.txt"), "missing.txt cannot be read"),
+        (("--warp-path", "missing.txt"), "missing.txt does not exist; check the path"),
         (("--warp-path", "binary.txt"), "binary.txt cannot be read: it is not text"),
     ],
 )

@@ -1,4 +1,4 @@
-"""A script's mould made in another process: the same to the last digit, and no process is left behind."""
+"""Work in a process of its own: what it makes comes back, what it breaks stays there."""
 
 from __future__ import annotations
 
@@ -6,102 +6,171 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from meshdrape.errors import FileError
-from meshdrape.mould.apart import ScriptApart
-from meshdrape.mould.library import build_script
+import meshdrape
+from meshdrape.errors import FileError, MouldError, SelectionError
+from meshdrape.mould import apart as module
+from meshdrape.mould import cad
+from meshdrape.mould.apart import DiedError, allow, apart, step
 
-ROOT = Path(__file__).resolve().parents[2]
-ASKED = ("cone", {}, 0.5, 0.05)
-# more than a million triangles: it takes a minute, which nobody waits for
-ENDLESS = ("hemisphere", {}, 1.0, 0.001)
-
-
-@pytest.fixture
-def apart(monkeypatch):
-    """As if CadQuery had not been imported here: then a process is begun."""
-    monkeypatch.delitem(sys.modules, "cadquery", raising=False)
-
-    def begun(*asked):
-        script = ScriptApart()
-        script.ask(*asked)
-        return script
-
-    return begun
+SAMPLES = Path(__file__).resolve().parents[2] / "samples"
+GIB = 2**30
 
 
-def test_it_is_the_mould_made_here(apart):
-    with apart(*ASKED) as script:
-        assert script._process is not None
-        made = script.mould()
-        assert script._process is None
-    here = build_script(*ASKED)
-    for name in ("vertices", "triangles", "triangle_face"):
-        assert np.array_equal(getattr(made, name), getattr(here, name))
-        assert not getattr(made, name).flags.writeable
-    assert [face.name for face in made.cad_faces] == [face.name for face in here.cad_faces]
-    assert (made.source, made.sha256) == (here.source, here.sha256)
+def test_what_it_returns_comes_back():
+    array = np.arange(300_000.0).reshape(-1, 3)
+    found, process = apart(lambda: (2 * array, os.getpid()), 10, GIB)
+    assert (found == 2 * array).all()
+    assert process != os.getpid()
 
 
-def test_errors_are_those_of_the_script(apart):
-    with apart("cone", {"half_angle": -1.0}, 0.5, 0.05) as script, pytest.raises(FileError) as there:
-        script.mould()
-    with pytest.raises(FileError) as here:
-        build_script("cone", {"half_angle": -1.0}, 0.5, 0.05)
-    assert str(there.value) == str(here.value)
+def test_what_it_raises_comes_back_with_all_it_carries():
+    def choose():
+        raise SelectionError("choose", ("a face",))
+
+    with pytest.raises(SelectionError, match="choose") as caught:
+        apart(choose, 10, GIB)
+    assert caught.value.faces == ("a face",)
+    # where a fault of ours arose is told
+    with pytest.raises(ZeroDivisionError) as caught:
+        apart(lambda: 1 / 0, 10, GIB)
+    assert "test_apart.py" in "".join(caught.value.__notes__)
 
 
-def test_a_process_that_dies_is_made_good_here(apart):
-    with apart(*ASKED) as script:
-        script._process.kill()
-        assert len(script.mould().triangles) == len(build_script(*ASKED).triangles)
+def endless():
+    while True:
+        pass
 
 
-@pytest.mark.usefixtures("apart")
-def test_one_that_is_never_asked_ends_too():
-    with ScriptApart() as script:
-        process = script._process
-    assert process.returncode == -signal.SIGKILL
+@pytest.mark.parametrize(
+    ("work", "how"),
+    [
+        (lambda: os.kill(os.getpid(), signal.SIGSEGV), "crashes"),
+        (os.abort, "crashes"),
+        (lambda: os._exit(0), "crashes"),
+        (lambda: sys.exit(3), "crashes"),
+        (endless, "hangs"),
+    ],
+)
+def test_what_ends_it_does_not_end_this_process(work, how):
+    with pytest.raises(DiedError) as caught:
+        apart(work, 0.2, GIB)
+    assert caught.value.how == how
 
 
-def test_leaving_the_block_ends_the_process(apart):
-    with apart(*ENDLESS) as script:
-        process = script._process
-        assert process.poll() is None
-    assert process.returncode == -signal.SIGKILL
+def test_one_that_waits_for_what_never_comes_hangs_too(monkeypatch):
+    monkeypatch.setattr(module, "PATIENCE", 2)
+    begun = time.perf_counter()
+    with pytest.raises(DiedError, match="hangs"):
+        apart(lambda: time.sleep(60), 0.1, GIB)
+    assert time.perf_counter() - begun < 30
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
-def test_no_process_outlives_the_one_that_asked(how):
-    code = (
-        "import time; from meshdrape.mould.apart import ScriptApart\n"
-        "with ScriptApart() as script:\n"
-        f"    script.ask(*{ENDLESS!r})\n"
-        "    print(script._process.pid, flush=True); time.sleep(60)"
+def test_each_step_begins_the_seconds_anew():
+    def steps():
+        for _ in range(4):
+            until = time.process_time() + 0.2
+            while time.process_time() < until:
+                pass
+            step()
+        return "done"
+
+    assert apart(steps, 0.5, GIB) == "done"
+    step()
+    allow(0.001, 1)
+    assert signal.getitimer(signal.ITIMER_PROF) == (0.0, 0.0)  # neither does anything here
+
+
+def test_memory_without_end():
+    with pytest.raises((MemoryError, DiedError)):
+        apart(lambda: len(np.ones(2 * GIB, dtype=np.uint8)), 10, GIB)
+    assert apart(lambda: len(np.ones(GIB // 4, dtype=np.uint8)), 10, GIB) == GIB // 4
+
+
+def test_control_c_ends_it():
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        apart(endless, 60, GIB)
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)  # nothing is left of it
+
+
+ORPHAN = """
+import os, time
+from meshdrape.mould.apart import apart
+
+def work():
+    print(os.getpid(), flush=True)
+    while True:
+        pass
+
+apart(work, 1.0, 2**30)
+"""
+
+
+def test_it_ends_though_nobody_waits_for_it():
+    root = str(Path(meshdrape.__file__).parents[1])
+    waiting = subprocess.Popen(
+        [sys.executable, "-c", ORPHAN], stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": root}
     )
-    asking = subprocess.Popen(
-        [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(ROOT)}, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    assert asking.stdout is not None
-    child = int(asking.stdout.readline())
-    asking.send_signal(how)
-    asking.communicate(timeout=30)
-    assert asking.returncode == -how
-    deadline = time.monotonic() + 15
-    while _runs(child) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not _runs(child)
+    assert waiting.stdout is not None
+    child = int(waiting.stdout.readline())
+    waiting.kill()
+    waiting.wait()
+    for _ in range(600):
+        try:
+            os.kill(child, 0)
+        except ProcessLookupError:
+            return
+        if Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
+            return  # ended, and only its parent's parent has not looked
+        time.sleep(0.1)
+    os.kill(child, signal.SIGKILL)
+    pytest.fail("it lives on")
 
 
-def _runs(pid: int) -> bool:
-    """Whether a process is there and has not ended; one that nobody has waited for yet has."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
+@pytest.mark.parametrize(("end", "how"), [(os.abort, "crashes"), (endless, "hangs")])
+def test_a_file_that_brings_open_cascade_down(monkeypatch, end, how):
+    monkeypatch.setattr(cad, "read_step", lambda path: end())
+    monkeypatch.setattr(cad, "SECONDS_TO_READ", 0.2)
+    with pytest.raises(FileError, match=f"cone.step is damaged: Open CASCADE {how} on it; export it anew"):
+        meshdrape.read_mould(SAMPLES / "cone.step")
+
+
+@pytest.mark.parametrize(
+    ("statement", "message"),
+    [
+        ("import os; os.abort()", "brings Python or Open CASCADE down"),
+        ("x = " + "(" * 100_000, "is not a Python script|brings Python or Open CASCADE down"),
+        ("while True: pass", "does not come to an end in 0.005 minutes"),
+    ],
+)
+def test_a_script_that_does(monkeypatch, tmp_path, statement, message):
+    monkeypatch.setattr(cad, "SECONDS_TO_BUILD", 0.3)
+    path = tmp_path / "box.py"
+    path.write_text(f"import cadquery as cq\n{statement}\nshow_object(cq.Workplane().box(1, 1, 1).faces('>Z'))\n")
+    with pytest.raises(FileError, match=message) as caught:
+        meshdrape.read_mould(path)
+    assert str(path) in str(caught.value)
+
+
+def test_faces_that_bring_it_down_only_when_they_are_cut(monkeypatch):
+    monkeypatch.setattr(cad, "SECONDS_A_STEP", 0.2)
+    monkeypatch.setattr(cad, "cut_faces", lambda *_: endless())
+    with pytest.raises(FileError, match="hangs"):
+        meshdrape.read_mould(SAMPLES / "cube_corner.step")
+
+
+def test_errors_of_faces_name_the_file(monkeypatch):
+    def cut(*_):
+        raise MouldError("face 1 is torn; mend it")
+
+    monkeypatch.setattr(cad, "cut_faces", cut)
+    with pytest.raises(MouldError, match=r"cube_corner\.step: face 1 is torn; mend it"):
+        meshdrape.read_mould(SAMPLES / "cube_corner.step")

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from meshdrape.errors import FileError
+from meshdrape.output import files
 from meshdrape.output.files import atomic_write
 
 
@@ -52,6 +53,64 @@ def test_a_link_is_followed(tmp_path):
         file.write(b"new")
     assert (tmp_path / "link").is_symlink()
     assert (tmp_path / "real").read_bytes() == b"new"
+
+
+def left_behind(folder, name="net.ply", digits="0123abcd"):
+    path = folder / f".{name}.{digits}.part"
+    path.write_bytes(b"half")
+    return path
+
+
+def test_what_a_killed_process_left_is_swept_by_the_next_that_writes_there(tmp_path):
+    left_behind(tmp_path)
+    left_behind(tmp_path, digits="ffffffff")
+    others = [
+        left_behind(tmp_path, "net.json"),
+        left_behind(tmp_path, "a.net.ply"),
+        left_behind(tmp_path, digits="0123abcdef"),
+        left_behind(tmp_path, "netXply"),
+    ]
+    with atomic_write(tmp_path / "net.ply") as file:
+        file.write(b"whole")
+    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "net.ply"])
+
+
+def test_what_another_process_still_writes_is_left_to_it(tmp_path):
+    path = tmp_path / "net.ply"
+    with atomic_write(path) as one:
+        one.write(b"one")
+        with atomic_write(path) as other:
+            other.write(b"other")
+        assert path.read_bytes() == b"other"
+        assert len(list(tmp_path.iterdir())) == 2
+    assert path.read_bytes() == b"one"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_part_swept_before_it_was_locked_is_begun_anew(tmp_path, monkeypatch):
+    lock, swept = files.fcntl.flock, []
+
+    def late(file, how):
+        if not swept:
+            swept.extend(tmp_path.iterdir())
+            swept[0].unlink()
+        lock(file, how)
+
+    monkeypatch.setattr(files.fcntl, "flock", late)
+    with atomic_write(tmp_path / "net.ply") as file:
+        file.write(b"whole")
+    assert len(swept) == 1
+    assert (tmp_path / "net.ply").read_bytes() == b"whole"
+    assert list(tmp_path.iterdir()) == [tmp_path / "net.ply"]
+
+
+def test_names_that_no_file_can_have(tmp_path):
+    assert "File name too long" in refusal(tmp_path / ("a" * 300))
+    # the name itself would do, the hidden one beside it is longer
+    assert "File name too long; choose another name" in refusal(tmp_path / ("a" * 250))
+    (tmp_path / "ring").symlink_to("ring")
+    assert "symbolic links" in refusal(tmp_path / "ring")
+    assert [path.name for path in tmp_path.iterdir()] == ["ring"]
 
 
 def refusal(path):

@@ -132,7 +132,7 @@ def test_lists_of_differing_lengths_are_told(file):
 
 def test_missing_files_and_folders_are_told(tmp_path):
     assert "does not exist" in refused(tmp_path / "no.ply")
-    assert "is a folder" in refused(tmp_path)
+    assert "is a directory" in refused(tmp_path)
 
 
 def test_a_writer_that_stops_early_leaves_nothing(tmp_path):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import os
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.errors import FileError
+from meshdrape.mould.check import FARTHEST
+from meshdrape.mould.files import existing_file
 
 
 def read_points(path: str | os.PathLike[str]) -> NDArray[np.float64]:
@@ -22,7 +23,7 @@ def read_points(path: str | os.PathLike[str]) -> NDArray[np.float64]:
     FileError
         If the file cannot be read, or a line is no point: with its number.
     """
-    file = os.fspath(path)
+    file = os.fspath(existing_file(path, "curve"))
     try:
         with open(file, encoding="utf-8-sig") as text:
             lines = text.read().splitlines()
@@ -53,11 +54,12 @@ def read_points(path: str | os.PathLike[str]) -> NDArray[np.float64]:
 def _point(words: list[str], file: str, number: int) -> tuple[float, float, float]:
     try:
         x, y, z = (float(word) for word in words)
-        if all(math.isfinite(value) for value in (x, y, z)):
+        # NaN fails the comparison too
+        if all(abs(value) <= FARTHEST for value in (x, y, z)):
             return x, y, z
     except ValueError:
         pass
-    msg = f"{file}, line {number}: {' '.join(words)!r} is no point; give x y z in mm, such as 120.5 0 33"
+    msg = f"{file}, line {number}: {_shown(words)} is no point; give x y z in mm, such as 120.5 0 33"
     raise FileError(msg)
 
 
@@ -71,5 +73,12 @@ def _indices(words: list[str], n_points: int, file: str, number: int) -> list[in
             return found
     except ValueError:
         pass
-    msg = f"{file}, line {number}: l {' '.join(words)} names points it does not have; there are {n_points} before it"
+    msg = (
+        f"{file}, line {number}: l {_shown(words)[1:-1]} names points it does not have; there are {n_points} before it"
+    )
     raise FileError(msg)
+
+
+def _shown(words: list[str]) -> str:
+    """The words in quotes, in ASCII and cut short: what is no text may hold anything at any length."""
+    return ascii(" ".join(words)[:60])

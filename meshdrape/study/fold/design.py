@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from meshdrape.errors import DesignError, FileError
+from meshdrape.mould.files import brief, existing_file
 from meshdrape.theory import Fold, Profile, named_deviation, named_profile
 from meshdrape.theory.profiles import DEVIATIONS, PROFILES
 from meshdrape.theory.sheet import MOST_NODES
@@ -25,6 +26,8 @@ _LENGTH_C = ("sine", "bump", "ripple")  # c is a length there, elsewhere a slope
 
 # A wing shorter than this, or longer, mm, has its lengths in another unit than it says.
 SHORTEST_SPAN, LONGEST_SPAN = 100.0, 200e3
+# No number of a wing is larger, in whatever unit.
+LARGEST = 1e9
 
 # A chord or a wave so many spans long has forgotten its unit; so has a chord or a height of a thousandth of the span.
 FAR_LONGER = 50.0
@@ -142,16 +145,11 @@ def read_design(path: str | PathLike[str]) -> Design:
     DesignError
         It makes no wing box: one line that names the key and the way out.
     """
-    source = Path(path)
+    source = existing_file(path, "design")
     try:
-        text = source.read_bytes()
-    except OSError as error:
-        msg = f"cannot read {path}: {error.strerror}"
-        raise FileError(msg) from None
-    try:
-        table = tomllib.loads(text.decode("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        msg = f"{path} is no TOML: {' '.join(str(error).split())}"
+        table = tomllib.loads(source.read_bytes().decode("utf-8"))
+    except (ValueError, RecursionError) as error:  # TOML's and UTF-8's are ValueErrors, as are endless integers
+        msg = f"{path} is no TOML: {brief(error)}; write it as samples/designs have it"
         raise FileError(msg) from None
     try:
         return replace(design_from(table), source=source)
@@ -214,7 +212,7 @@ def _shape(part: dict[str, Any], key: str, known: Any, where: str, size: dict[st
         if parameter == key:
             continue
         if parameter == "metre" or parameter == "span":
-            msg = f"{where} {key} {name!r} does not take {parameter!r}"
+            msg = f"{where} {key} {name!r} does not take {_shown(parameter)}"
             raise DesignError(msg)
         if isinstance(value, list):
             given[parameter] = np.array([_real(one, f"{where} {parameter}[{k}]") for k, one in enumerate(value)])
@@ -266,7 +264,7 @@ def _gamma(start: dict[str, Any]) -> float | str:
     value = start.get("gamma_deg", 0.0)
     if isinstance(value, str):
         if value not in ("free", "best"):
-            msg = f'[start] gamma_deg = "{value}": give a number of degrees, "free" or "best"'
+            msg = f'[start] gamma_deg = {_shown(value)}: give a number of degrees, "free" or "best"'
             raise DesignError(msg)
         return value
     degrees = _real(value, "[start] gamma_deg")
@@ -346,7 +344,7 @@ def _check_profiles(design: Design) -> None:
 def _only(table: dict[str, Any], known: tuple[str, ...], where: str) -> None:
     for key in table:
         if key not in known:
-            msg = f"{where} has no key {key!r}: {', '.join(known)}"
+            msg = f"{where} has no key {_shown(key)}: {', '.join(known)}"
             raise DesignError(msg)
 
 
@@ -367,7 +365,7 @@ def _word(table: dict[str, Any], key: str, default: str | None, known: Any, wher
         msg = f"{where}{key} is missing; one of {', '.join(known)}"
         raise DesignError(msg)
     if not isinstance(value, str) or value not in known:
-        msg = f"{where}{key} = {value!r} is not known: {', '.join(known)}"
+        msg = f"{where}{key} = {_shown(value)} is not known: {', '.join(known)}"
         raise DesignError(msg)
     return value
 
@@ -385,13 +383,20 @@ def _number(table: dict[str, Any], key: str, default: float | None = None, *, po
 
 def _real(value: Any, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        msg = f"{what} = {value!r} is not a number"
+        msg = f"{what} = {_shown(value)} is not a number"
         raise DesignError(msg)
+    # NaN fails the comparison too, and whole numbers may be too long for a float
+    if not abs(value) <= LARGEST:
+        finite = isinstance(value, int) or math.isfinite(value)
+        msg = f"{what} = {_shown(value)} is {f'beyond {LARGEST:g}' if finite else 'not finite'}; check its unit"
+        raise DesignError(msg)
+    return float(value)
+
+
+def _shown(value: Any) -> str:
+    """A value as it stands in a message: whatever it is, in a few words."""
     try:
-        number = float(value)
-    except OverflowError:  # TOML's integers have no end
-        number = math.inf
-    if not math.isfinite(number):
-        msg = f"{what} = {number} is not finite"
-        raise DesignError(msg)
-    return number
+        text = repr(value)
+    except ValueError:  # a whole number of thousands of digits
+        return "a whole number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:56]} ..."
