@@ -109,6 +109,16 @@ def test_smooth_limit_of_the_nearest_spar_sits_at_the_angle():
     assert reach.ribbon_fed_best <= LOCKING
 
 
+def test_design_many_times_over_the_limit_still_gets_an_answer():
+    """Slopes of three: psi is nowhere near linear in f; f shrunk until it fits is found, and proved."""
+    of = design(spar={"deviation": "ripple", "c": 0.5, "wavelength": 1.0}, span=4.0, spacing=0.05, spar_height=0.5)
+    found = nearest_spar(of, draped(of))
+    assert found.proven
+    assert not found.unchanged
+    assert found.shear.largest <= LOCKING
+    assert np.abs(found.nearest).max() < np.abs(found.wanted).max() / 5
+
+
 def test_unknown_measure():
     of = design(spacing=0.1)
     with pytest.raises(DesignError, match="no measure is called 'angle': slope, position"):

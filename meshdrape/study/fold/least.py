@@ -33,10 +33,16 @@ def least_distance(root: FloatArray, row: FloatArray, least: FloatArray) -> Floa
     from scipy.linalg import solve_triangular
     from scipy.optimize import nnls
 
-    # rows of unit length in z = root x
-    turned = solve_triangular(root, row.T, trans="T").T
+    msg = "no spar meets the locking angle within reach; raise locking_angle_deg or lower spar_height"
+    # rows of unit length in z = root x; one of none asks for what no x changes
+    turned = solve_triangular(root, row.T, trans="T", check_finite=False).T
     length = np.linalg.norm(turned, axis=1)
-    turned, least = turned / length[:, None], least / length
+    said = length > 0
+    if not np.isfinite(length).all() or (least[~said] > 0).any():
+        raise DesignError(msg)
+    turned, least = turned[said] / length[said, None], least[said] / length[said]
+    if not len(least):
+        return np.zeros(row.shape[1])
     scale = float(least.max())
     if scale <= 0:
         return np.zeros(row.shape[1])
@@ -45,7 +51,6 @@ def least_distance(root: FloatArray, row: FloatArray, least: FloatArray) -> Floa
     goal[-1] = 1.0
     weight, rest = nnls(system, goal, maxiter=50 * system.shape[1])
     if rest < 1e-10:
-        msg = "no spar meets the locking angle within reach; raise locking_angle_deg or lower spar_height"
         raise DesignError(msg)
     residual = system @ weight - goal
     z = -scale * residual[:-1] / residual[-1]

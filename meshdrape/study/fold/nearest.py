@@ -51,7 +51,8 @@ def nearest_spar(
     column y1 that meet within reach, and the range of ψ over the columns that come down to ribbon-fed rows no more than
     twice that. ψ hangs on the slope of f alone and nearly linearly, so each round is a least-squares problem under
     linear inequalities, solved exactly; only pairs found wanting so far are in it. What is left of the discrete net is
-    found by draping: the angle asked for is moved until the drape sits just below the locking angle.
+    found by draping: the angle asked for is moved until the drape sits just below the locking angle. Where a design is
+    so far off that no round closes, f is shrunk until it fits.
     """
     if measure not in MEASURES:
         msg = f"no measure is called {measure!r}: {', '.join(MEASURES)}"
@@ -71,7 +72,11 @@ def nearest_spar(
     best: tuple[float, FloatArray, FoldDrape] | None = None
     tried: tuple[FloatArray, FoldDrape] | None = None
     while drapes < MOST_DRAPES:
-        values = f(y) + problem.change(angle)(y)
+        try:
+            values = f(y) + problem.change(angle)(y)
+        except DesignError:
+            # too far off for psi to be taken for linear: f shrunk is no least change, but one that fits
+            values = f(y) + problem.shrunk(angle)(y)
         candidate = design.with_deviation(Shape("table", {"y": y, "f": values}))
         frame = frame_of(candidate)
         drapes += 1
@@ -198,6 +203,17 @@ class _Problem:
             values = least_distance(self.root, -row, -room)
         self.values = values
         return self.spline(values)
+
+    def shrunk(self, angle: float) -> Profile:
+        """The change that leaves as much of f as keeps the angle: for designs many times over the limit."""
+        f = self.design.deviation_profile(self.knots)
+        low, high = 0.0, 1.0
+        for _ in range(12):
+            middle = (low + high) / 2
+            frame = self.frame((middle - 1) * f)
+            _, worst = self._wanting(frame, frame.fold.psi(self.y), angle)
+            low, high = (middle, high) if worst <= MET else (low, middle)
+        return self.spline((low - 1) * f)
 
     def _wanting(self, frame: Frame, psi: FloatArray, angle: float) -> tuple[_Pairs, float]:
         """For each row the columns that ask the most of it either way, where that is past the angle."""
