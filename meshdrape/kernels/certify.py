@@ -4,19 +4,13 @@ import math
 
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.tables import KEPT_OUT
-from meshdrape.kernels.walk import MAX_CROSSINGS, corner_at, first_exit, next_exit
+from meshdrape.kernels.walk import MAX_CROSSINGS
 
 # A path over which the surface turns by more than about 100 degrees may lie on a tube, with another way round the back.
 # One sharp crease turns it by 90.
 TURNED_OVER = -0.17
 # Vertices that give less than this part of the turn are not counted.
 LEAST_DOUBT = 0.01
-
-
-@kernel(inline="always")
-def turned_over(normal, f, g):
-    """Whether the normals of two faces are so far apart that a tube's back may be the shorter way."""
-    return normal[f, 0] * normal[g, 0] + normal[f, 1] * normal[g, 1] + normal[f, 2] * normal[g, 2] < TURNED_OVER
 
 
 @kernel
@@ -58,33 +52,59 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
 
     True is no proof: it is for exact distances to decide.
 
+    It is written so that numba counts no reference to an array: counting takes longer than all the rest.
+
     Parameters
     ----------
     plane, neighbour
         Of `Unfolding`, as `walk` has them.
     detour, normal : (m, 3)
-        Of `Detours`; (0, 3) where no path on the surface has a second route.
+        Of `Detours`, not empty.
     """
-    if len(detour) == 0:
-        return False
     tx = x + length * dx
     ty = y + length * dy
     left = 0.0
     right = 0.0
     for k in range(3):
-        if detour[face, k] != 0.0:
-            cx, cy = corner_at(plane, face, k)
-            doubt = _doubt(detour[face, k], x - cx, y - cy, tx - cx, ty - cy, dx, dy)
+        d = detour[face, k]
+        if d != 0.0:
+            cx = 0.0
+            cy = 0.0
+            if k == 1:
+                cx = plane[face, 21]
+            elif k == 2:
+                cx = plane[face, 22]
+                cy = plane[face, 23]
+            doubt = _doubt(d, x - cx, y - cy, tx - cx, ty - cy, dx, dy)
             if doubt > 0.0:
                 left += doubt
             else:
                 right -= doubt
-    tail = face
-    exit_edge = first_exit(plane, face, x, y, dx, dy, length)
+    nx = normal[face, 0]
+    ny = normal[face, 1]
+    nz = normal[face, 2]
+    entered = -1
     for _ in range(MAX_CROSSINGS):
-        code = neighbour[face, exit_edge] if exit_edge >= 0 else -1
+        # over the edge that the end lies beyond; of two the one whose head the line leaves on its left
+        exit_edge = -1
+        for k in range(3):
+            if k == entered or plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty >= plane[face, 3 * k + 2]:
+                continue
+            exit_edge = k
+            cx = 0.0
+            cy = 0.0
+            if k == 0:
+                cx = plane[face, 21]
+            elif k == 1:
+                cx = plane[face, 22]
+                cy = plane[face, 23]
+            if dx * (cy - y) - dy * (cx - x) >= 0.0:
+                break
+        if exit_edge < 0:
+            return left > 1.0 or right > 1.0
+        code = neighbour[face, exit_edge]
         if code < 0:
-            break
+            return left > 1.0 or right > 1.0
         at = 9 + 4 * exit_edge
         c = plane[face, at]
         s = plane[face, at + 1]
@@ -94,15 +114,20 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
         face = code // 3
         entered = code - 3 * face
         # the one corner that is new
-        k = entered + 2 if entered == 0 else entered - 1
-        if detour[face, k] != 0.0:
-            cx, cy = corner_at(plane, face, k)
-            doubt = _doubt(detour[face, k], x - cx, y - cy, tx - cx, ty - cy, dx, dy)
+        d = detour[face, (entered + 2) % 3]
+        if d != 0.0:
+            cx = 0.0
+            cy = 0.0
+            if entered == 0:
+                cx = plane[face, 22]
+                cy = plane[face, 23]
+            elif entered == 2:
+                cx = plane[face, 21]
+            doubt = _doubt(d, x - cx, y - cy, tx - cx, ty - cy, dx, dy)
             if doubt > 0.0:
                 left += doubt
             else:
                 right -= doubt
-        if turned_over(normal, tail, face):
-            return True
-        exit_edge = next_exit(plane, face, entered, x, y, dx, dy, length)
+        if nx * normal[face, 0] + ny * normal[face, 1] + nz * normal[face, 2] < TURNED_OVER:
+            left = math.inf
     return left > 1.0 or right > 1.0

@@ -79,8 +79,9 @@ def place(
             if (px * qy - py * qx) * side < FOLD_SINE:
                 return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             code = PLACED
-            if second_route(plane, neighbour, detour, normal, fa, xa, ya, ux, uy, wa) or second_route(
-                plane, neighbour, detour, normal, fb, xb, yb, vx, vy, wb
+            if len(detour) > 0 and (
+                second_route(plane, neighbour, detour, normal, fa, xa, ya, ux, uy, wa)
+                or second_route(plane, neighbour, detour, normal, fb, xb, yb, vx, vy, wb)
             ):
                 code = DOUBTED
             return code, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations

@@ -365,7 +365,9 @@ def straight_on(mesh, detours, net, start, family, i, j, step, i2, j2, dx, dy, l
     tail = net.face[i, j]
     x = net.xy[i, j, 0]
     y = net.xy[i, j, 1]
-    doubted = second_route(mesh.plane, mesh.neighbour, detours.corner, detours.normal, tail, x, y, dx, dy, length)
+    doubted = len(detours.corner) > 0 and second_route(
+        mesh.plane, mesh.neighbour, detours.corner, detours.normal, tail, x, y, dx, dy, length
+    )
     code, f, x, y, ex, ey = walk(mesh.plane, mesh.neighbour, tail, x, y, dx, dy, length)
     if code != WALKED:
         return OUTSIDE

@@ -45,11 +45,12 @@ class Detours(NamedTuple):
 
     corner: FloatArray
     """(m, 3) of the vertex at each corner: 0 where it offers no shorter way; else the tangent of half its angle defect,
-    with a margin; or KEPT_OUT and the radius, mm, within which a path may have a shorter way round it and others."""
+    with a margin; or KEPT_OUT and the radius, mm, within which a path may have a shorter way round it and others.
+    (0, 3) where no path on the surface has a shorter way."""
     wary: NDArray[np.bool_]
     """(m,) whether even a path within the face may have a shorter way."""
     normal: FloatArray
-    """(m, 3) unit normals."""
+    """(m, 3) unit normals; (0, 3) likewise."""
 
 
 class Lattice(NamedTuple):

@@ -11,58 +11,6 @@ LEFT_SURFACE = 1
 MAX_CROSSINGS = 100_000
 
 
-@kernel(inline="always")
-def corner_at(plane, face, k):
-    """Corner k of a face in its frame."""
-    if k == 1:
-        return plane[face, 21], 0.0
-    if k == 2:
-        return plane[face, 22], plane[face, 23]
-    return 0.0, 0.0
-
-
-@kernel(inline="always")
-def first_exit(plane, face, x, y, dx, dy, length):
-    """Edge by which a path leaves the face it starts in; -1 if it ends there."""
-    # which edges the end lies beyond
-    tx = x + length * dx
-    ty = y + length * dy
-    exit_edge = -1
-    worst = 0.0
-    second = -1
-    for k in range(3):
-        height = plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty - plane[face, 3 * k + 2]
-        if height < 0.0:
-            if exit_edge >= 0:
-                second = exit_edge if height < worst else k
-            if height < worst:
-                worst = height
-                exit_edge = k
-    if second >= 0:
-        # beyond two: the corner between them decides, by the side on which the line passes it
-        v = second if (exit_edge + 1) % 3 == second else exit_edge
-        cx, cy = corner_at(plane, face, v)
-        exit_edge = (v + 2) % 3 if dx * (cy - y) - dy * (cx - x) > 0.0 else v
-    return exit_edge
-
-
-@kernel(inline="always")
-def next_exit(plane, face, entered, x, y, dx, dy, length):
-    """Edge by which a path that came in over edge `entered` leaves a face; -1 if it ends there."""
-    # in over one edge, out over the next where the far corner lies to the left, over the one before where not
-    cx, cy = corner_at(plane, face, (entered + 2) % 3)
-    exit_edge = (entered + 1) % 3 if dx * (cy - y) - dy * (cx - x) > 0.0 else (entered + 2) % 3
-    tx = x + length * dx
-    ty = y + length * dy
-    if plane[face, 3 * exit_edge] * tx + plane[face, 3 * exit_edge + 1] * ty < plane[face, 3 * exit_edge + 2]:
-        return exit_edge
-    # along an edge it is round-off that chose the side; what counts is whether the end lies in the face
-    other = 3 - entered - exit_edge
-    if plane[face, 3 * other] * tx + plane[face, 3 * other + 1] * ty < plane[face, 3 * other + 2]:
-        return other
-    return -1
-
-
 @kernel
 def walk(plane, neighbour, face, x, y, dx, dy, length):
     """Walk straight on for `length` from (x, y) in `face`, in the unit direction (dx, dy).
@@ -82,10 +30,34 @@ def walk(plane, neighbour, face, x, y, dx, dy, length):
         Face where the path ends; image of the start and the direction in its frame: the end is
         (x + length dx, y + length dy).
     """
-    exit_edge = first_exit(plane, face, x, y, dx, dy, length)
+    # first face: which edges the end lies beyond
+    tx = x + length * dx
+    ty = y + length * dy
+    exit_edge = -1
+    worst = 0.0
+    second = -1
+    for k in range(3):
+        height = plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty - plane[face, 3 * k + 2]
+        if height < 0.0:
+            if exit_edge >= 0:
+                second = exit_edge if height < worst else k
+            if height < worst:
+                worst = height
+                exit_edge = k
+    if exit_edge < 0:
+        return WALKED, face, x, y, dx, dy
+    if second >= 0:
+        # beyond two: the corner between them decides, by the side on which the line passes it
+        v = second if (exit_edge + 1) % 3 == second else exit_edge
+        cx = 0.0
+        cy = 0.0
+        if v == 1:
+            cx = plane[face, 21]
+        elif v == 2:
+            cx = plane[face, 22]
+            cy = plane[face, 23]
+        exit_edge = (v + 2) % 3 if dx * (cy - y) - dy * (cx - x) > 0.0 else v
     for _ in range(MAX_CROSSINGS):
-        if exit_edge < 0:
-            return WALKED, face, x, y, dx, dy
         code = neighbour[face, exit_edge]
         if code < 0:
             return LEFT_SURFACE, face, x, y, dx, dy
@@ -96,7 +68,27 @@ def walk(plane, neighbour, face, x, y, dx, dy, length):
         dx, dy = c * dx - s * dy, s * dx + c * dy
         face = code // 3
         entered = code - 3 * face
-        exit_edge = next_exit(plane, face, entered, x, y, dx, dy, length)
+        # in over one edge, out over the next where the far corner lies to the left, over the one before where not
+        cx = 0.0
+        cy = 0.0
+        if entered == 0:
+            cx = plane[face, 22]
+            cy = plane[face, 23]
+        elif entered == 2:
+            cx = plane[face, 21]
+        exit_edge = entered + 1 if dx * (cy - y) - dy * (cx - x) > 0.0 else entered + 2
+        if exit_edge > 2:
+            exit_edge -= 3
+        at = 3 * exit_edge
+        tx = x + length * dx
+        ty = y + length * dy
+        if plane[face, at] * tx + plane[face, at + 1] * ty - plane[face, at + 2] >= 0.0:
+            # along an edge it is round-off that chose the side; what counts is whether the end lies in the face
+            other = 3 - entered - exit_edge
+            at = 3 * other
+            if plane[face, at] * tx + plane[face, at + 1] * ty - plane[face, at + 2] >= 0.0:
+                return WALKED, face, x, y, dx, dy
+            exit_edge = other
     return LEFT_SURFACE, face, x, y, dx, dy
 
 

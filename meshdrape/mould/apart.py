@@ -11,6 +11,7 @@ import faulthandler
 import os
 import pickle
 import resource
+import select
 import signal
 import sys
 import traceback
@@ -25,6 +26,9 @@ T = TypeVar("T")
 # Time of the processor is what is measured, for others may use it too; a process that sleeps ends after so many times
 # as long by the clock.
 PATIENCE: Final = 20
+# A library that had threads of its own may wait in the fork for one that was not forked with it: it stands still then.
+STILL_SECONDS: Final = 2.0
+_GLANCE: Final = 0.25
 _TIMERS: Final = (signal.SIGPROF, signal.SIGALRM)
 
 # Of a forked process: the address space it had when it was forked, bytes, and the seconds its work has at a time.
@@ -49,7 +53,8 @@ class DiedError(Exception):
 def apart(work: Callable[[], T], seconds: float, memory: int) -> T:
     """What a function returns or raises, called in a process forked for it.
 
-    Where processes cannot be forked it is called in this one.
+    Where processes cannot be forked it is called in this one; also where the fork waits for threads of a library, such
+    as those of Open CASCADE once it has worked in this process, which do not live there.
 
     Parameters
     ----------
@@ -77,7 +82,9 @@ def apart(work: Callable[[], T], seconds: float, memory: int) -> T:
     status = None
     try:
         with os.fdopen(answers, "rb") as pipe:
-            raised, value = pickle.load(pipe)
+            stuck = _stands_still(child, pipe)
+            if not stuck:
+                raised, value = pickle.load(pipe)
     except (EOFError, pickle.UnpicklingError):
         _, status = os.waitpid(child, 0)
         timed_out = os.WIFSIGNALED(status) and os.WTERMSIG(status) in _TIMERS
@@ -86,9 +93,28 @@ def apart(work: Callable[[], T], seconds: float, memory: int) -> T:
         if status is None:
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
+    if stuck:
+        return work()
     if raised:
         raise value
     return value  # type: ignore[no-any-return]
+
+
+def _stands_still(child: int, pipe: IO[bytes]) -> bool:
+    """Wait for the answer of a fork; True if it waits for a lock instead, and nothing in it moves."""
+    glances, before = 0, ""
+    while not select.select([pipe], [], [], _GLANCE)[0]:
+        try:
+            waits_in = Path(f"/proc/{child}/wchan").read_text()
+            fields = Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()
+        except OSError:  # the system does not say: its timers will end it
+            continue
+        state, now = fields[0], " ".join(fields[11:13])  # of the processor, its own and the system's
+        still = state == "S" and now == before and ("futex" in waits_in or waits_in in ("", "0"))
+        glances, before = glances + 1 if still else 0, now
+        if glances * _GLANCE >= STILL_SECONDS:
+            return True
+    return False
 
 
 def allow(seconds: float, memory: int) -> None:

@@ -93,6 +93,22 @@ def test_memory_without_end():
     assert apart(lambda: len(np.ones(GIB // 4, dtype=np.uint8)), 10, GIB) == GIB // 4
 
 
+def test_threads_that_were_not_forked_are_not_waited_for():
+    """Open CASCADE's pool of threads, once it has worked here, is empty in a fork, and would be waited for."""
+    import cadquery
+
+    def cut():
+        box = cadquery.Workplane().box(30, 20, 10)
+        for k in range(4):
+            box = box.cut(cadquery.Workplane().center(k, 0).circle(1 + k).extrude(20))
+        return box.val().Volume()
+
+    here = cut()
+    begun = time.perf_counter()
+    assert apart(cut, 60, GIB) == pytest.approx(here, rel=1e-12)
+    assert time.perf_counter() - begun < 50
+
+
 def test_control_c_ends_it():
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
