@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import MouldError
 from meshdrape.kernels.tables import Unfolding
-from meshdrape.kernels.unfold import corner_angles, join, lay_flat
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -146,6 +145,8 @@ class Surface:
     @cached_property
     def corner_angle(self) -> FloatArray:
         """Angle of each face at each of its corners, (m, 3), rad."""
+        from meshdrape.kernels.unfold import corner_angles
+
         angle = np.empty((len(self.faces), 3))
         corner_angles(self.vertices, self.faces, angle)
         return angle
@@ -318,6 +319,8 @@ def _rim(faces: IntArray, neighbour: IntArray, n_mould_faces: int) -> NDArray[np
 
 
 def _unfold(surface: Surface) -> Unfolding:
+    from meshdrape.kernels.unfold import join, lay_flat
+
     m = len(surface.faces)
     corner, frame = np.empty((m, 3)), np.empty((m, 9))
     line, crossing, plane = np.empty((m, 9)), np.empty((m, 12)), np.empty((m, 24))

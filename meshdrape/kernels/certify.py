@@ -85,20 +85,26 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
     nz = normal[face, 2]
     entered = -1
     for _ in range(MAX_CROSSINGS):
-        # over the edge that the end lies beyond; of two the one whose head the line leaves on its left
+        # over the edge that the end lies beyond; of two the one that the line itself crosses
         exit_edge = -1
         for k in range(3):
             if k == entered or plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty >= plane[face, 3 * k + 2]:
                 continue
             exit_edge = k
-            cx = 0.0
-            cy = 0.0
-            if k == 0:
-                cx = plane[face, 21]
-            elif k == 1:
-                cx = plane[face, 22]
-                cy = plane[face, 23]
-            if dx * (cy - y) - dy * (cx - x) >= 0.0:
+            ux = 0.0
+            uy = 0.0
+            vx = plane[face, 21]
+            vy = 0.0
+            if k == 1:
+                ux = plane[face, 21]
+                vx = plane[face, 22]
+                vy = plane[face, 23]
+            elif k == 2:
+                ux = plane[face, 22]
+                uy = plane[face, 23]
+                vx = 0.0
+            # its tail to the right of the line, its head to the left
+            if dx * (uy - y) - dy * (ux - x) <= 0.0 and dx * (vy - y) - dy * (vx - x) >= 0.0:
                 break
         if exit_edge < 0:
             return left > 1.0 or right > 1.0

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command import ROOT, binary_stl, obj, off, ply, run
+from command import ROOT, run
+from meshfiles import binary_stl, obj, off, text_ply
 from moulds import Mesh, plate
 
 PLATE = plate()
@@ -21,7 +22,7 @@ READERS = {"drape": ("mould.stl", "-o", "net.ply", "--spacing", "20"), "inspect"
 def folder(monkeypatch, tmp_path) -> Path:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mould.stl").write_bytes(binary_stl(PLATE))
-    (tmp_path / "mould.ply").write_bytes(ply(PLATE))
+    (tmp_path / "mould.ply").write_bytes(text_ply(PLATE))
     (tmp_path / "mould.obj").write_bytes(obj(PLATE))
     os.mkfifo(tmp_path / "pipe.stl")
     os.mkfifo(tmp_path / "pipe.ply")
@@ -75,10 +76,10 @@ def test_one_line_and_nothing_lost(capfd, folder, words, culprit):
 
 def test_the_mould_is_not_overwritten_by_a_companion_of_the_net(capfd, folder):
     """Draped from where a former run wrote it, NET.mould.ply would be the net's own mould."""
-    (folder / "net.mould.ply").write_bytes(ply(PLATE))
+    (folder / "net.mould.ply").write_bytes(text_ply(PLATE))
     message = refused(capfd, *["drape", "net.mould.ply", "-o", "net.ply", "--spacing", "20"])
     assert "net.mould.ply is read and would be overwritten" in message
-    assert (folder / "net.mould.ply").read_bytes() == ply(PLATE)
+    assert (folder / "net.mould.ply").read_bytes() == text_ply(PLATE)
     (folder / "curve.obj").write_text("v -50 0 0\nv 50 0 0\n")
     (folder / "net.json").symlink_to("curve.obj")
     assert "net.json is read" in refused(capfd, *(DRAPE + "net.ply --warp-path curve.obj").split())
@@ -114,7 +115,7 @@ def test_a_path_is_told_by_its_file(capfd, folder):
 @pytest.mark.parametrize("suffix", ["obj", "off", "ply"])
 def test_text_as_editors_save_it(capfd, folder, suffix):
     """A byte order mark hid the first line: an OBJ file had one vertex less, in silence."""
-    whole = {"obj": obj, "off": off, "ply": ply}[suffix](PLATE)
+    whole = {"obj": obj, "off": off, "ply": text_ply}[suffix](PLATE)
     path = folder / f"saved.{suffix}"
     facts = []
     for content in (whole, b"\xef\xbb\xbf" + whole, whole.replace(b"\n", b"\r\n")):
@@ -130,7 +131,7 @@ def test_text_as_editors_save_it(capfd, folder, suffix):
 def test_a_million_vertices_in_eighty_places(capfd, folder):
     mesh = Mesh(np.tile(PLATE.vertices, (12_500, 1)), PLATE.triangles + len(PLATE.vertices) * 12_000)
     path = folder / "many.ply"
-    head = ply(Mesh(PLATE.vertices, mesh.triangles)).partition(b"end_header")[0].decode()
+    head = text_ply(Mesh(PLATE.vertices, mesh.triangles)).partition(b"end_header")[0].decode()
     head = head.replace("ascii", "binary_little_endian").replace(f"vertex {len(PLATE.vertices)}", "vertex 1000000")
     rows = np.zeros(len(mesh.triangles), dtype=[("n", "u1"), ("corner", "<i4", (3,))])
     rows["n"], rows["corner"] = 3, mesh.triangles

@@ -1,23 +1,23 @@
 """Hundreds of files read, nets measured, audited and written in one process take no more memory than the first did."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from meshfiles import binary_stl, obj, off, text_ply, text_stl
 from moulds import bumpy
 from test_many_drapes import resident
 
 import meshdrape
 from meshdrape.geodesic.guarded import _SOLVER, solve_guarded
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
-from command import CAD, SAMPLES, ascii_stl, binary_stl, obj, off, ply
+ROOT = Path(__file__).resolve().parents[2]
+CAD, SAMPLES = ROOT / "cad", ROOT / "samples"
 
 MESH = bumpy(1, n=12)
 COARSE = {"chord_tolerance": 1.0, "angle_tolerance": np.radians(5)}
-MESHES = {"binary.stl": binary_stl, "text.stl": ascii_stl, "mesh.obj": obj, "mesh.off": off, "text.ply": ply}
+MESHES = {"binary.stl": binary_stl, "text.stl": text_stl, "mesh.obj": obj, "mesh.off": off, "text.ply": text_ply}
 
 
 def growth(do: Callable[[int], object], warm: int, times: int) -> float:
