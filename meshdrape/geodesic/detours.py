@@ -25,6 +25,8 @@ MARGIN, CROWD_MARGIN = 1.5, 2.0
 SPREAD = 1.0
 # Normals compared each with each, at most.
 MOST_NORMALS = 3000
+# Boxes along an axis, so that their numbers stay below 2^63.
+MOST_BOXES = 2.0**20
 # Crowds whose centres lie within this part of their reach of one another are taken as one.
 ALIKE = 0.25
 
@@ -79,13 +81,23 @@ def _crowds(vertices: FloatArray, defect: FloatArray, asked: IntArray, length: f
     convex = np.flatnonzero(defect)
     half = 0.5 * length
     low = vertices[convex].min(axis=0)
-    box = np.floor((vertices[convex] - low) / half).astype(np.int64)
+    width = max(half, float(np.ptp(vertices[convex], axis=0).max()) / MOST_BOXES)
+    box = np.floor((vertices[convex] - low) / width).astype(np.int64)
     size = box.max(axis=0) + 1
     key = (box[:, 0] * size[1] + box[:, 1]) * size[2] + box[:, 2]
     order = np.argsort(key, kind="stable")
     convex = convex[order]
     reach, gathered = reach_of_crowds(
-        vertices[asked], vertices[convex], defect[convex], key[order], low, size, half, CROWD_MARGIN, defect[asked]
+        vertices[asked],
+        vertices[convex],
+        defect[convex],
+        key[order],
+        low,
+        size,
+        width,
+        half,
+        CROWD_MARGIN,
+        defect[asked],
     )
     return np.asarray(reach), np.asarray(gathered)
 

@@ -11,7 +11,7 @@ N_RADII = 24
 
 
 @kernel
-def reach_of_crowds(centre, position, defect, key, low, size, half, margin, own):
+def reach_of_crowds(centre, position, defect, key, low, size, width, half, margin, own):
     """From how far off the vertices round each centre may offer a shorter way to a path of length 2 `half`.
 
     Defects that add up to S within a radius rho act, seen from farther off than rho, as one vertex of defect S does:
@@ -22,10 +22,12 @@ def reach_of_crowds(centre, position, defect, key, low, size, half, margin, own)
     ----------
     centre : (c, 3)
     position, defect : (n, 3) mm, (n,) rad
-        Convex vertices, sorted by `key`, the number of the box of width `half` that holds each.
+        Convex vertices, sorted by `key`, the number of the box that holds each.
     key : (n,) int64
     low, size : (3,)
         Corner of the first box; number of boxes each way.
+    width : float
+        Of a box, mm, at least `half`.
     margin : float
         Factor on the defects.
     own : (c,) rad
@@ -42,9 +44,9 @@ def reach_of_crowds(centre, position, defect, key, low, size, half, margin, own)
     total = np.empty(N_RADII + 1)
     for at in range(n):
         total[:] = 0.0
-        ix = math.floor((centre[at, 0] - low[0]) / half)
-        iy = math.floor((centre[at, 1] - low[1]) / half)
-        iz = math.floor((centre[at, 2] - low[2]) / half)
+        ix = math.floor((centre[at, 0] - low[0]) / width)
+        iy = math.floor((centre[at, 1] - low[1]) / width)
+        iz = math.floor((centre[at, 2] - low[2]) / width)
         for jx in range(max(ix - 1, 0), min(ix + 2, size[0])):
             for jy in range(max(iy - 1, 0), min(iy + 2, size[1])):
                 row = (jx * size[1] + jy) * size[2]

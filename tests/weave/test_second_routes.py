@@ -8,7 +8,7 @@ import meshdrape
 from meshdrape.geodesic import surface_distance
 from meshdrape.geodesic.detours import detours
 from meshdrape.kernels.certify import second_route
-from meshdrape.kernels.tables import Detours
+from meshdrape.kernels.tables import KEPT_OUT, Detours
 from meshdrape.kernels.walk import WALKED, walk
 from meshdrape.surface import Surface, SurfacePoint
 
@@ -127,3 +127,18 @@ def test_suspicion_is_local():
     rng = np.random.default_rng(1)
     places = [(x, y, 3.0) for x, y in rng.uniform(0.05, 0.95, (100, 2)) * (500, 400)]
     assert {past(surface, np.array(place), 10.0, rng, 1.0) for place in places} == {(False, False)}
+
+
+def test_suspicion_does_not_depend_on_how_large_the_rest_is():
+    """Where boxes as wide as a path would be more than there are numbers."""
+    small, far = blunt_cone(1.0), 1e9
+    corners = np.abs(small.vertices[:, :2]).max(axis=1) >= 80.0 * (1 - 1e-12)
+    large = Mesh(np.where(corners[:, None], far * small.vertices, small.vertices), small.triangles)
+    tip = int(np.argmax(small.vertices[:, 2]))
+    radius = []
+    for mesh in (small, large):
+        surface = mesh.mould().surface
+        face, k = np.argwhere(surface.faces == tip)[0]
+        radius.append(detours(surface, 20.0).corner[face, k] - KEPT_OUT)
+    assert radius[0] > 4
+    assert radius[1] == pytest.approx(radius[0], rel=1e-6)
