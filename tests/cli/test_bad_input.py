@@ -311,7 +311,7 @@ def test_interrupted_write_leaves_no_part_of_a_file(capfd, monkeypatch, tmp_path
     monkeypatch.setattr(meshdrape.output, writer, half_then(KeyboardInterrupt))
     if writer != "draw_net":
         monkeypatch.setattr(meshdrape.output, "draw_net", lambda *_: None)
-    outcome = run(capfd, "drape", moulds / "top.stl", "-o", tmp_path / "net.ply", "--spacing", "20")
+    outcome = run(capfd, "drape", moulds / "top.stl", "-o", tmp_path / "net.ply", "--spacing", "20", "--quiet")
     assert outcome.code == 130
     assert outcome.out == ""
     assert outcome.err == "meshdrape: interrupted; no file was left half written\n"
