@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     chart = parser.add_argument_group("the chart of allowable deviations")
     chart.add_argument(
         "--chart", nargs="?", const=(20, 20), type=_grid, metavar="AxB",
-        help="drape A amplitudes x B wavelengths of a family of f (20x20); takes a minute or more",
+        help="drape A amplitudes x B wavelengths of a family of f (20x20); takes half a minute or more",
     )  # fmt: skip
     chart.add_argument("--family", choices=("sine", "ripple", "bump"), help="the family of f (sine)")
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
