@@ -174,7 +174,7 @@ def _rolled(spar: SparMap, points: FloatArray, second: str) -> FloatArray:
 def draw_limits(design: Design, limits: tuple[Limit, ...], nearest: NearestSpar) -> bytes:
     """The wanted f, how far it may go by each rule for the left-most ribbon, and the nearest f that can be made."""
     with styled():
-        figure = new_figure(_WIDTH, 2.75)
+        figure = new_figure(_WIDTH, 3.2)
         panels = figure.subplots(1, 1 if nearest.unchanged else 2, squeeze=False)[0]
         _allowed(panels[0], design, limits)
         if not nearest.unchanged:
@@ -182,7 +182,8 @@ def draw_limits(design: Design, limits: tuple[Limit, ...], nearest: NearestSpar)
         for ax in panels:
             ax.set_xlabel("y along the span (m)")
             ax.set_xlim(0.0, design.span / METRE)
-            ax.legend(loc="best", fontsize=7.5)
+            # below: inside, a wave leaves it no place
+            ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, fontsize=7.5)
         return png(figure)
 
 
