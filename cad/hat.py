@@ -36,6 +36,9 @@ def build(
         if not size > 0:
             msg = f"{name}={size}: must be positive"
             raise ValueError(msg)
+    if fillet_radius > 20 * radius:
+        msg = f"fillet_radius={fillet_radius}: must be at most {20 * radius:g}, or nothing of the dome is left"
+        raise ValueError(msg)
     foot = sqrt(radius**2 + 2 * radius * fillet_radius)
     if not rim_radius > foot:
         msg = f"rim_radius={rim_radius}: must be larger than {foot:.3f}, where the fillet ends"
@@ -62,8 +65,13 @@ def build(
     room = cq.Solid.makeBox(2 * radius, 2 * radius, radius, cq.Vector(-radius, -radius, on_fillet(leave)[1]))
     tool = base.fuse(ball.intersect(room))
     faces = [
-        next(face for face in tool.Faces() if face.geomType() == kind and face.normalAt().z > 0.5 * (kind == "PLANE"))
-        for kind in ("SPHERE", "TORUS", "PLANE")
+        next(
+            face
+            for face in tool.Faces()
+            if face.geomType() in kinds and face.normalAt().z > 0.5 * (kinds == ("PLANE",))
+        )
+        # a fillet wider than the hole it leaves is no torus to the kernel
+        for kinds in (("SPHERE",), ("TORUS", "REVOLUTION"), ("PLANE",))
     ]
     shape = cq.Workplane(cq.Shell.makeShell(faces))
     for name, face in zip(("dome", "fillet", "rim"), shape.val().Faces(), strict=True):
