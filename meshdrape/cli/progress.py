@@ -24,7 +24,7 @@ def compilation_told(quiet: bool) -> Iterator[None]:
     if quiet or is_compiled():
         yield
         return
-    notice = "meshdrape: compiling the kernels, once; this takes about half a minute\n"
+    notice = "meshdrape: compiling the kernels, once; this takes up to a minute\n"
     timer = threading.Timer(BEFORE_KERNELS, sys.stderr.write, [notice])
     timer.daemon = True
     timer.start()

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels.walk import turn_into
-from meshdrape.kernels.windows import Faces, Windows, nearest_way, nearest_ways, spread
+from meshdrape.kernels.ways import nearest_way, nearest_ways
+from meshdrape.kernels.windows import Faces, Windows, spread
 from meshdrape.surface import Surface
 
 FloatArray = NDArray[np.float64]

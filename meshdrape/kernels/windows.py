@@ -103,7 +103,7 @@ def spread(on, out, face, x, y, reach, slack):
     out.counts[N_ROOM] = 1
     at_vertex = -1
     for k in range(3):
-        cx, cy = _corner(on.plane, face, k)
+        cx, cy = corner_of(on.plane, face, k)
         dx = cx - x
         dy = cy - y
         away = math.hypot(dx, dy)
@@ -131,7 +131,7 @@ def spread(on, out, face, x, y, reach, slack):
 
 
 @kernel
-def _corner(plane, f, k):
+def corner_of(plane, f, k):
     """Corner k of a face in its frame."""
     if k == 0:
         return 0.0, 0.0
@@ -227,9 +227,9 @@ def _onward(on, out, w, reach, slack):
     s = out.real[w, S]
     f = half // 3
     k = half - 3 * f
-    px, py = _corner(on.plane, f, k)
-    qx, qy = _corner(on.plane, f, (k + 1) % 3)
-    vx, vy = _corner(on.plane, f, (k + 2) % 3)
+    px, py = corner_of(on.plane, f, k)
+    qx, qy = corner_of(on.plane, f, (k + 1) % 3)
+    vx, vy = corner_of(on.plane, f, (k + 2) % 3)
     # rays from the image through the ends of the piece, and to the corner
     lx = px + low * (qx - px) - sx
     ly = py + low * (qy - py) - sy
@@ -278,8 +278,8 @@ def _over(on, out, f, e, sx, sy, low, high, passed, bend, base, c, s, turned, re
     code = on.across[f, e]
     if code < 0 or not high - low > 1e-15:
         return
-    px, py = _corner(on.plane, f, e)
-    qx, qy = _corner(on.plane, f, (e + 1) % 3)
+    px, py = corner_of(on.plane, f, e)
+    qx, qy = corner_of(on.plane, f, (e + 1) % 3)
     ex = qx - px
     ey = qy - py
     edge2 = ex * ex + ey * ey
@@ -299,7 +299,7 @@ def _over(on, out, f, e, sx, sy, low, high, passed, bend, base, c, s, turned, re
         if out.spot[on.vertex[f, (e + 1) % 3], DISTANCE] + (1.0 - low) * edge < to_low - slack:
             return
         at, known = (low, to_low) if turned == 1 else (high, to_high)
-        ox, oy = _corner(on.plane, f, (e + 2) % 3)
+        ox, oy = corner_of(on.plane, f, (e + 2) % 3)
         by_third = out.spot[on.vertex[f, (e + 2) % 3], DISTANCE] + math.hypot(px + at * ex - ox, py + at * ey - oy)
         if by_third < known - slack:
             return
@@ -328,10 +328,10 @@ def _over(on, out, f, e, sx, sy, low, high, passed, bend, base, c, s, turned, re
 @kernel
 def _from_corner(on, out, f, k, low, high, passed, bend, reach, slack):
     """The window from corner k of a face over a piece of the edge opposite, and ways along the sides to its ends."""
-    sx, sy = _corner(on.plane, f, k)
+    sx, sy = corner_of(on.plane, f, k)
     for end in (1, 2):
         if (end == 1 and low == 0.0) or (end == 2 and high == 1.0):
-            cx, cy = _corner(on.plane, f, (k + end) % 3)
+            cx, cy = corner_of(on.plane, f, (k + end) % 3)
             along = math.hypot(cx - sx, cy - sy)
             ux = (cx - sx) / along
             uy = (cy - sy) / along
@@ -376,10 +376,10 @@ def _round(on, out, v, reach, slack):
         begun = False
         turned = 0.0
         while True:
-            sx, sy = _corner(on.plane, f, k)
+            sx, sy = corner_of(on.plane, f, k)
             # the sides at the vertex: that over which the turn enters, and the other
-            ux, uy = _corner(on.plane, f, (k + 2) % 3 if clockwise else (k + 1) % 3)
-            wx, wy = _corner(on.plane, f, (k + 1) % 3 if clockwise else (k + 2) % 3)
+            ux, uy = corner_of(on.plane, f, (k + 2) % 3 if clockwise else (k + 1) % 3)
+            wx, wy = corner_of(on.plane, f, (k + 1) % 3 if clockwise else (k + 2) % 3)
             ux -= sx
             uy -= sy
             wx -= sx
@@ -415,106 +415,3 @@ def _turned_cut(ux, uy, wx, wy, wide, turn):
     a = math.hypot(ux, uy) * math.sin(turn)
     b = math.hypot(wx, wy) * math.sin(wide - turn)
     return a / (a + b)
-
-
-@kernel
-def nearest_way(on, out, source, sx, sy, face, x, y):
-    """The shortest of all ways from the source (sx, sy), in its face, to (x, y) in `face`.
-
-    Each is the length of a path there is: a place that no window quite holds, for round-off, is reached by the end of
-    one.
-
-    Returns
-    -------
-    (length, arrive_x, arrive_y, bend, leave_x, leave_y, base)
-        In mm; direction in which the path arrives, in the frame of `face`; the last vertex at which it bends, -1 where
-        it is straight; direction in which it leaves the source, in the frame of the face `base`.
-    """
-    best = math.inf
-    ax = 0.0
-    ay = 0.0
-    lx = 0.0
-    ly = 0.0
-    bend = -1
-    base = source
-    if face == source:
-        best = math.hypot(x - sx, y - sy)
-        if best > 0.0:
-            ax = (x - sx) / best
-            ay = (y - sy) / best
-            lx = ax
-            ly = ay
-    for k in range(3):
-        w = out.first[3 * face + k]
-        px, py = _corner(on.plane, face, k)
-        qx, qy = _corner(on.plane, face, (k + 1) % 3)
-        while w >= 0:
-            ox = out.real[w, X]
-            oy = out.real[w, Y]
-            length = out.real[w, PASSED]
-            # beside the rays through the piece's ends: round the nearer end
-            at = -1.0
-            hx = px + out.real[w, LOW] * (qx - px)
-            hy = py + out.real[w, LOW] * (qy - py)
-            if (hx - ox) * (y - oy) - (hy - oy) * (x - ox) > 0.0:
-                at = out.real[w, LOW]
-            hx = px + out.real[w, HIGH] * (qx - px)
-            hy = py + out.real[w, HIGH] * (qy - py)
-            if (hx - ox) * (y - oy) - (hy - oy) * (x - ox) < 0.0:
-                at = out.real[w, HIGH]
-            hx = x
-            hy = y
-            if at >= 0.0:
-                hx = px + at * (qx - px)
-                hy = py + at * (qy - py)
-                length += math.hypot(x - hx, y - hy)
-            size = math.hypot(hx - ox, hy - oy)
-            length += size
-            if length < best and size > 0.0:
-                best = length
-                bend = out.whole[w, BEND]
-                base = out.whole[w, BASE]
-                ax = (hx - ox) / size
-                ay = (hy - oy) / size
-                lx = out.real[w, C] * ax + out.real[w, S] * ay
-                ly = out.real[w, C] * ay - out.real[w, S] * ax
-                size = math.hypot(x - hx, y - hy)
-                if size > 0.0:
-                    ax = (x - hx) / size
-                    ay = (y - hy) / size
-            w = out.whole[w, NEXT]
-    for k in range(3):
-        v = on.vertex[face, k]
-        cx, cy = _corner(on.plane, face, k)
-        size = math.hypot(x - cx, y - cy)
-        if out.spot[v, DISTANCE] + size < best:
-            best = out.spot[v, DISTANCE] + size
-            bend = v
-            if size > 0.0:
-                ax = (x - cx) / size
-                ay = (y - cy) / size
-            elif out.way[v, INTO] == 3 * face + k:
-                ax = out.spot[v, ARRIVE_X]
-                ay = out.spot[v, ARRIVE_Y]
-            if out.way[v, BEFORE] == AT_SOURCE:
-                bend = -1
-                base = face
-                lx = ax
-                ly = ay
-    last = bend
-    while bend >= 0:
-        lx = out.spot[bend, LEAVE_X]
-        ly = out.spot[bend, LEAVE_Y]
-        base = out.way[bend, FIRST]
-        bend = out.way[bend, BEFORE]
-    return best, ax, ay, last, lx, ly, base
-
-
-@kernel
-def nearest_ways(on, out, source, sx, sy, face, xy):
-    """Lengths of the shortest ways to many places, (n,); infinite where the face is -1."""
-    lengths = np.full(len(face), math.inf)
-    for n in range(len(face)):
-        if face[n] >= 0:
-            lengths[n] = nearest_way(on, out, source, sx, sy, face[n], xy[n, 0], xy[n, 1])[0]
-    return lengths
