@@ -34,6 +34,8 @@ FloatArray = NDArray[np.float64]
 METRE: Final = 1000.0  # pictures are in metres, answers in millimetres
 _WIDTH: Final = 7.6  # inches, that of the page's text
 _CELLS: Final = 24_000  # at most so many are drawn of a map
+_NAMES_CLOSE: Final = 0.15  # of the span: stations nearer than this share one label
+_AT_BEGIN: Final = 0.07  # of the span: a label there stands to the right of its station, clear of the axis
 RULES: Final = {"gamma 0": "upright, γ = 0", "free": "straight on", "best": "best γ", "design": "as designed"}
 
 
@@ -78,16 +80,23 @@ def _mark_pair(turn: Axes, shear: Axes, where: Where, pair: Pair, gamma: float |
         psi[0] = np.degrees(gamma)
     turn.plot(stations / METRE, psi, "o--", color=colour, markersize=6, markerfacecolor="white", linewidth=1.0,
               clip_on=False, zorder=5)  # fmt: skip
-    names = ("row" if gamma is None else "left ribbon, γ", "column")
-    aside = (0, 6, "center") if gamma is None else (9, -9, "left")
-    for name, at, value, (dx, dy, align) in zip(names, stations / METRE, psi, (aside, (0, 6, "center")), strict=True):
-        turn.annotate(name, (at, value), (dx, dy), textcoords="offset points", color=colour, fontsize=7.5, ha=align,
+    # one pair is named above its stations and one below: both may have the same
+    above = gamma is None
+    left, right = sorted(zip(stations / METRE, psi, ("row" if above else "left ribbon, γ", "column"), strict=True))
+    span = float(np.ptp(where.y)) / METRE
+    labels = [left, right]
+    if right[0] - left[0] < _NAMES_CLOSE * span:
+        labels = [(left[0], (max if above else min)(left[1], right[1]), f"{left[2]}, {right[2]}")]
+    begin = float(where.y.min()) / METRE + _AT_BEGIN * span
+    for at, height, name in labels:
+        turn.annotate(name, (at, height), (0, 6 if above else -6), textcoords="offset points", color=colour,
+                      fontsize=7.5, ha="left" if at < begin else "center", va="bottom" if above else "top",
                       bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8})  # fmt: skip
-    value = abs(np.degrees(pair.shear))
-    shear.plot(stations[1] / METRE, value, "o", color=colour, markersize=6, markerfacecolor="white", clip_on=False,
-               zorder=5)  # fmt: skip
-    shear.annotate(f"{value:.2f}°", (stations[1] / METRE, value), (-6, 3), textcoords="offset points", color=colour,
-                   fontsize=8, weight="bold", ha="right")  # fmt: skip
+    at, value = stations[1] / METRE, abs(np.degrees(pair.shear))
+    shear.plot(at, value, "o", color=colour, markersize=6, markerfacecolor="white", clip_on=False, zorder=5)
+    aside, align = (6, "left") if at < begin else (-6, "right")
+    shear.annotate(f"{value:.2f}°", (at, value), (aside, 3), textcoords="offset points", color=colour, fontsize=8,
+                   weight="bold", ha=align)  # fmt: skip
 
 
 def draw_spar(spar: SparMap, where: Where, locking_angle: float, second: str) -> bytes:

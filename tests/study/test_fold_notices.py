@@ -60,3 +60,10 @@ def test_ways_to_lay_the_real_wing():
     own = {one.rule: one.shear for one in laying.choices if (one.first, one.end) == ("wing", "root")}
     assert own["best"].ribbon_fed < 0.53 * own["gamma 0"].ribbon_fed
     assert own["best"].wing_fed == own["gamma 0"].wing_fed
+
+
+def test_a_locking_angle_in_radians_is_noticed():
+    """7 degrees are 0.122 radians; as degrees that is no cloth's locking angle."""
+    _, found = warned(design(locking_angle_deg=0.122, spacing=0.2))
+    assert "6.99 if that was radians" in found["locking"].text
+    assert "locking" not in warned(design(spacing=0.2))[1]

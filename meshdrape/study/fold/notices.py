@@ -16,6 +16,8 @@ from meshdrape.theory import grazing_rows, returning_rows, separation_of_scales
 GRAZING = math.radians(1.0)
 # psi may change by this from ribbon to ribbon, rad, before a criterion that takes it for constant misleads.
 COARSE = math.radians(0.5)
+# No cloth locks below this, rad: the number was meant in radians.
+IN_RADIANS = math.radians(1.0)
 
 
 def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWarning, ...]:
@@ -61,6 +63,14 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
     if (verdict.criteria["characteristics"].largest <= design.locking_angle) != verdict.feasible:
         found.append(
             FoldWarning("verdict", "too close to call: drape and characteristic construction decide differently")
+        )
+    if design.locking_angle < IN_RADIANS:
+        said = math.degrees(design.locking_angle)
+        found.append(
+            FoldWarning(
+                "locking",
+                f"no cloth locks at {said:g} deg; locking_angle_deg = {math.degrees(said):.3g} if that was radians",
+            )
         )
     if drape.lost:
         node = drape.node[np.isfinite(drape.node).all(axis=-1)]
