@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshdrape.cli.main import DONE, FABRIC_MISSING
 from meshdrape.cli.options import count, positive
+from meshdrape.cli.progress import compilation_told
 from meshdrape.errors import FabricError, FileError, NetError, StartError
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     mould = _mould(path, stored, options.mould)
     seconds = math.inf if options.edges else options.seconds or SECONDS
     try:
-        found = recheck(mould, stored, options.edges, seconds)
+        with compilation_told(options.json):
+            found = recheck(mould, stored, options.edges, seconds)
     except (StartError, FabricError) as error:
         # of a net that was laid neither would have come
         msg = f"{path} is not the net that was laid on {mould.source}: {error}; drape anew"

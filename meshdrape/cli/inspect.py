@@ -16,6 +16,7 @@ from meshdrape.cli.options import (
     read_mould,
     reading,
 )
+from meshdrape.cli.progress import compilation_told
 
 if TYPE_CHECKING:
     from meshdrape.mould.inspect import Inspection
@@ -69,7 +70,8 @@ def _forecast(options: argparse.Namespace, found: Inspection) -> dict[str, Any]:
         mould = read_mould(options)
     spacing = options.spacing or mould.surface.diagonal / SPACINGS
     fabric = Fabric(spacing, options.initial_angle, options.locking_angle)
-    told = forecast(mould, fabric, options.seed, options.direction, options.extent)
+    with compilation_told(options.json):
+        told = forecast(mould, fabric, options.seed, options.direction, options.extent)
     shear, lock = math.degrees(told.max_shear), math.degrees(fabric.locking_angle)
     warnings = []
     if told.max_shear > fabric.locking_angle:

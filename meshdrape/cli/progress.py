@@ -12,24 +12,24 @@ from typing import Any
 from meshdrape.cli.interrupt import check
 
 PATIENCE = 2.0
-# Input that cannot be draped is found before any kernel is needed, well within this, s.
-BEFORE_KERNELS = 1.5
+# What input that cannot be draped needs of kernels is compiled well within this, s: its one line stays alone.
+A_FEW_KERNELS = 1.5
+NOTICE = "meshdrape: compiling the kernels, once; this takes up to a minute\n"
 
 
 @contextmanager
 def compilation_told(quiet: bool) -> Iterator[None]:
-    """Say that the kernels are being compiled, if they are and it takes its time."""
-    from meshdrape.kernels.cache import is_compiled
-
-    if quiet or is_compiled():
+    """Say that kernels are being compiled, if they are and it takes its time."""
+    if quiet:
         yield
         return
-    notice = "meshdrape: compiling the kernels, once; this takes up to a minute\n"
-    timer = threading.Timer(BEFORE_KERNELS, sys.stderr.write, [notice])
+    from meshdrape.kernels import cache
+
+    timer = threading.Timer(A_FEW_KERNELS, sys.stderr.write, [NOTICE])
     timer.daemon = True
-    timer.start()
     try:
-        yield
+        with cache.compilation_told(timer.start):
+            yield
     finally:
         timer.cancel()
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshdrape.cli.main import DONE, UNJUDGED
-from meshdrape.cli.progress import Progress
+from meshdrape.cli.progress import Progress, compilation_told
 
 if TYPE_CHECKING:
     from meshdrape.study.claims import Recomputed
@@ -41,7 +41,8 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
         from meshdrape.study.claims import n_steps, recompute
 
         progress.stage("recomputing the report", n_steps())
-        recomputed = recompute(quick=options.quick, progress=progress.step)
+        with compilation_told(options.json):
+            recomputed = recompute(quick=options.quick, progress=progress.step)
         progress.stage("drawing")
         progress.step(0)
         command = "meshdrape validate" + (" --quick" if options.quick else "")

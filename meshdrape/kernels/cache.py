@@ -9,10 +9,13 @@ import hashlib
 import os
 import shutil
 import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
 import numba
+from numba.core import event
 
 HERE = Path(__file__).parent
 PREFIX = "kernels-"
@@ -30,10 +33,25 @@ def kernel(function=None, *, inline="never", nogil=False):
         numba.config.CACHE_DIR = told
 
 
-def is_compiled() -> bool:
-    """Whether an earlier run left the compiled form of just these kernels."""
-    place = folder()
-    return place is not None and next(place.rglob("sweep.sweep-*.nbc"), None) is not None
+@contextmanager
+def compilation_told(tell: Callable[[], object]) -> Iterator[None]:
+    """Have `tell` called once, before the first kernel that no earlier run has left compiled."""
+    with event.install_listener("numba:compile", _Once(tell)):
+        yield
+
+
+class _Once(event.Listener):
+    """Passes the first event on, whichever thread it comes from."""
+
+    def __init__(self, tell):
+        self._left = [tell]
+
+    def on_start(self, event):
+        with suppress(IndexError):
+            self._left.pop()()
+
+    def on_end(self, event):
+        pass
 
 
 @cache

@@ -16,7 +16,15 @@ OUTER = (
     "from meshdrape.kernels.cache import kernel\nfrom meshdrape.kernels.inner import inner\n"
     "@kernel\ndef outer(x):\n    return 10 * inner(x)\n"
 )
-ASK = "from meshdrape.kernels.outer import outer; print(outer(1)); print(sum(outer.stats.cache_hits.values()))"
+ASK = """
+from meshdrape.kernels.cache import compilation_told
+from meshdrape.kernels.outer import outer
+told = []
+with compilation_told(lambda: told.append(1)):
+    print(outer(1))
+print(sum(outer.stats.cache_hits.values()))
+assert len(told) == 1 - sum(outer.stats.cache_hits.values()), told
+"""
 
 
 @pytest.fixture
@@ -33,7 +41,7 @@ def kernels(tmp_path: Path) -> Path:
 
 
 def ask(kernels: Path, **settings: str) -> tuple[int, int]:
-    """The outer kernel's answer, and how often its machine code came from an earlier run."""
+    """The outer kernel's answer, and how often its machine code came from an earlier run; told of where it did not."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
     environment |= {"PYTHONPATH": str(kernels.parents[1]), **settings}
     command = [sys.executable, "-P", "-c", ASK]
