@@ -51,6 +51,17 @@ class View:
         offset = np.asarray(points, dtype=np.float64) - self.centre
         return np.asarray(self.middle + offset @ self.axes[:2].T / self.mm_per_pixel)
 
+    def hides(self, point: ArrayLike, corners: FloatArray, clearance: float) -> bool:
+        """Tell whether one of some triangles (n, 3, 3), mm, is before a point (3,), nearer by a clearance, mm."""
+        right, up, near = np.moveaxis((corners - np.asarray(point)) @ self.axes.T, 2, 0)  # each (n, 3)
+        after, last = [1, 2, 0], [2, 0, 1]
+        # twice the areas between the line of sight and each edge: of one sign where it passes the triangle
+        area = right[:, after] * up[:, last] - right[:, last] * up[:, after]
+        inside = (area >= 0).all(axis=1) | (area <= 0).all(axis=1)
+        whole = area[inside].sum(axis=1)
+        depth = np.einsum("nk,nk->n", area[inside], near[inside])
+        return bool((depth * np.sign(whole) > clearance * np.abs(whole)).any())
+
 
 def view_axes(normals: FloatArray, areas: FloatArray, points: FloatArray) -> FloatArray:
     """Return the axes of a view on the side the normals point to, rows right, up and towards the eye, (3, 3).

@@ -30,7 +30,7 @@ _HEIGHTS: Final = (480.0, 1060.0)  # of the drawing
 _BLEED: Final = 10  # of the drawing into header and footer
 _FIBRE_GAP: Final = 24.0
 _ARROW: Final = 120.0
-_LABEL_ROOM: Final = 260.0
+_LABEL_ROOM: Final = 300.0
 _OUTLINE: Final = (84, 88, 96)
 _SEAM: Final = (140, 144, 150)
 _WHITE: Final = (255, 255, 255)
@@ -75,7 +75,7 @@ def draw_net(net: Net, measures: Measures, path: str | os.PathLike[str]) -> None
     for bottom, top in ((0, _FOOTER - _BLEED), (height - _HEADER + _BLEED, height)):
         stage.add_polygon([(0, bottom), (_WIDTH, bottom), (_WIDTH, top), (0, top)], _WHITE)
     _mark_seed(stage, net, view)
-    _mark_largest_shear(stage, net, measures, view)
+    _mark_largest_shear(stage, net, measures, view, clearance)
     add_title(stage, net, measures, _MARGIN, height - 30)
     add_colour_scale(stage, net.fabric.locking_angle)
     add_keys(stage, step)
@@ -159,16 +159,29 @@ def _arrow(stage: Stage, start: FloatArray, tip: FloatArray, colour: Colour) -> 
         stage.add_polygon([tip + 2.0 * rim * along, foot + wing, foot - wing], paint)
 
 
-def _mark_largest_shear(stage: Stage, net: Net, measures: Measures, view: View) -> None:
-    """Ring the cell with the largest shear and write the shear beside it, on the side away from the seed."""
+def _mark_largest_shear(stage: Stage, net: Net, measures: Measures, view: View, clearance: float) -> None:
+    """Ring the cell with the largest shear and write the shear beside it, on the side away from the seed.
+
+    Where the mould hides it the ring is broken, lest what lies before it be taken for it.
+    """
     if not np.isfinite(measures.max_shear):
         return
     place = view.pixels(measures.max_shear_position)
+    is_hidden = _is_hidden(net.mould, view, measures.max_shear_position, clearance)
     stage.add_ring(place, 20.0, _WHITE, 9.0)
-    stage.add_ring(place, 20.0, INK, 4.0)
+    stage.add_ring(place, 20.0, INK, 4.0, broken=is_hidden)
     is_right = bool(place[0] >= view.pixels(net.seed)[0])
     if not _LABEL_ROOM < place[0] < _WIDTH - _LABEL_ROOM:
         is_right = bool(place[0] < 0.5 * _WIDTH)
-    text = f"max {np.degrees(measures.max_shear):.1f}°"
+    text = f"max {np.degrees(measures.max_shear):.1f}°" + (", behind" if is_hidden else "")
     at = place + np.array([32.0 if is_right else -32.0, 0.0])
     stage.add_text(text, at, 27, INK, align="left" if is_right else "right", bold=True, plate=True)
+
+
+def _is_hidden(mould: Mould, view: View, place: FloatArray, clearance: float) -> bool:
+    """Tell whether a place of the cloth is on a side that is not seen, or behind other parts of the mould."""
+    surface = mould.surface
+    nearest, _ = surface.closest_point(place)
+    if surface.face_normal[nearest.face] @ view.toward < 0:
+        return True
+    return view.hides(place, surface.vertices[surface.faces], clearance)

@@ -119,13 +119,13 @@ class Stage:
         side = 0.5 * width * np.array([-along[1], along[0]])
         self.add_polygon([a + side, b + side, b - side, a - side], colour)
 
-    def add_ring(self, centre: ArrayLike, radius: float, colour: Colour, width: float) -> None:
-        """Lay a circle about (x, y) over the picture; all in pixels."""
+    def add_ring(self, centre: ArrayLike, radius: float, colour: Colour, width: float, *, broken: bool = False) -> None:
+        """Lay a circle about (x, y) over the picture, whole or in eight arcs; all in pixels."""
         angle = np.linspace(0.0, 2.0 * np.pi, 65)
         rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         outer = np.asarray(centre) + (radius + 0.5 * width) * rim
         inner = np.asarray(centre) + max(radius - 0.5 * width, 0.0) * rim
-        for k in range(64):
+        for k in (k for k in range(64) if not broken or k % 8 < 5):
             self.add_polygon([outer[k], outer[k + 1], inner[k + 1], inner[k]], colour)
 
     def add_text(

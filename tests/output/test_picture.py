@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError
-from meshdrape.output import draw_net
-from meshdrape.output.camera import fitted, view_axes
+from meshdrape.output import draw_net, picture
+from meshdrape.output.camera import View, fitted, view_axes
 from meshdrape.output.colour import shear_colour
 from meshdrape.output.scene import drawn_cells, drawn_fibres
 from meshdrape.output.stage import Stage
@@ -102,7 +102,7 @@ import sys
 sys.path[:0] = sys.argv[2:]
 from known_nets import flat_net, measured
 from meshdrape.errors import MissingLibraryError
-from meshdrape.output import draw_net
+from meshdrape.output import draw_net, picture
 net = flat_net()
 try:
     draw_net(net, measured(net), sys.argv[1])
@@ -212,3 +212,36 @@ def test_a_fitted_view_holds_its_subject_and_lets_the_far_go():
     view, _ = fitted(np.eye(3), square, square, (50.0, 100.0), 400.0, (100.0, 900.0))
     np.testing.assert_allclose(view.pixels(square[2]), [450, 500])
     assert view.mm_per_pixel == pytest.approx(10 / 400)
+
+
+def test_what_hides_a_point_lies_on_its_line_of_sight():
+    """Against a linear system for each triangle: point + t towards the eye = one of its points."""
+    rng = np.random.default_rng(3)
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    view = View(axes, rng.normal(size=3), np.zeros(2), 0.1)
+    hidden = 0
+    for _ in range(300):
+        point, corners = rng.normal(size=3), rng.normal(size=(1, 3, 3))
+        a, b, c = corners[0]
+        t, u, v = np.linalg.solve(np.stack([-view.toward, b - a, c - a], axis=1), point - a)
+        expected = u >= 0 and v >= 0 and u + v <= 1 and t > 0.3
+        assert view.hides(point, corners, 0.3) == expected
+        assert view.hides(point, corners[:, ::-1], 0.3) == expected
+        hidden += expected
+    assert hidden > 10
+
+
+def test_a_maximum_on_the_far_side_is_said_to_be_there(sphere, tmp_path, monkeypatch):
+    """At the foot of a dome seen from above: behind on one side, in view on the other."""
+    net, measures = sphere
+    texts = []
+    write = Stage.add_text
+    monkeypatch.setattr(
+        Stage, "add_text", lambda stage, text, *a, **k: texts.append(text) or write(stage, text, *a, **k)
+    )
+    view, _ = picture._view(net.mould, drawn_cells(net, measures))
+    for away, said in ((1.0, False), (-1.0, True)):
+        vertex = net.mould.vertices[np.argmax(net.mould.vertices @ (away * view.toward))]
+        draw_net(net, replace(measures, max_shear_position=vertex), tmp_path / "net.png")
+        assert [text.endswith(", behind") for text in texts if text.startswith("max")] == [said]
+        texts.clear()
