@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from meshdrape.kernels.certify import TURNED_OVER
 from meshdrape.kernels.crowd import reach_of_crowds
+from meshdrape.kernels.facets import star_radii
 from meshdrape.kernels.flood import flood
 from meshdrape.kernels.tables import KEPT_OUT, Detours
 from meshdrape.surface import Surface
@@ -136,13 +137,8 @@ def _thinned(vertices: FloatArray, centre: IntArray, reach: FloatArray) -> tuple
 
 def _star_radius(surface: Surface) -> FloatArray:
     """(n,) distance from each vertex to the nearest line of the edges round it, mm."""
-    edge = np.linalg.norm(
-        surface.vertices[np.roll(surface.faces, -2, axis=1)] - surface.vertices[np.roll(surface.faces, -1, axis=1)],
-        axis=2,
-    )
-    height = 2 * surface.face_area[:, None] / edge
-    out = np.full(len(surface.vertices), np.inf)
-    np.minimum.at(out, surface.faces.ravel(), height.ravel())
+    out = np.empty(len(surface.vertices))
+    star_radii(surface.vertices, surface.faces, surface.face_area, out)
     return out
 
 

@@ -48,9 +48,8 @@ def extended(surface: Surface, depth: float) -> Surface:
     n_mould_faces = len(surface.faces)
     notches = without_notches(surface, depth)
     if len(notches):
-        surface = Surface.from_arrays(surface.vertices, np.concatenate([surface.faces, notches]), n_mould_faces)
-    vertices = [surface.vertices]
-    faces = [surface.faces]
+        surface = surface.continued(np.empty((0, 3)), notches, n_mould_faces)
+    vertices, faces = [], []
     count = len(surface.vertices)
     for loop in surface.border_loops:
         if surface.is_hole(loop):
@@ -60,9 +59,9 @@ def extended(surface: Surface, depth: float) -> Surface:
         vertices.append(new_vertices)
         faces.append(new_faces)
         count += len(new_vertices)
-    if len(faces) == 1:
+    if not faces:
         return surface
-    return Surface.from_arrays(np.concatenate(vertices), np.concatenate(faces), n_mould_faces=n_mould_faces)
+    return surface.continued(np.concatenate(vertices), np.concatenate(faces), n_mould_faces)
 
 
 def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[FloatArray, IntArray]:
