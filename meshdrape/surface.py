@@ -142,9 +142,20 @@ class Surface:
         return float(self.face_area.sum())
 
     @cached_property
+    def extent(self) -> FloatArray:
+        """Sides of the bounding box, (3,) mm."""
+        return np.asarray(np.ptp(self.vertices, axis=0))
+
+    @cached_property
     def diagonal(self) -> float:
         """Diagonal of the bounding box, mm."""
-        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+        return float(np.linalg.norm(self.extent))
+
+    @cached_property
+    def middle(self) -> SurfacePoint:
+        """The point of the surface nearest to its centroid."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return self.closest_point(np.average((a + b + c) / 3, axis=0, weights=self.face_area))[0]
 
     @cached_property
     def face_diameter(self) -> FloatArray:

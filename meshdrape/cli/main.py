@@ -14,9 +14,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from meshdrape import __version__, kernels
+from meshdrape import __version__
 from meshdrape.cli import interrupt
 from meshdrape.errors import MeshdrapeError
+from meshdrape.kernels import blas
 
 # So many objects are made from one look for unreachable ones to the next; Python's own 700 are those of one import.
 SELDOM = 50_000
@@ -62,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     _make_printable()
-    kernels.alone = True
+    blas.unwanted = True
     with interrupt.Remembered(), _seldom_collected():
         try:
             code = _run(arguments)

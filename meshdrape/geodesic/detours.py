@@ -73,6 +73,8 @@ def _detours(surface: Surface, length: float) -> Detours:
 
 def _faces_one_way(normal: FloatArray) -> bool:
     """Whether no two normals (m, 3) are so far apart that a path could turn over; False where there are too many."""
+    if (normal @ normal[0]).min() <= TURNED_OVER + 1e-6:
+        return False
     one_way = np.unique(normal.round(9), axis=0)
     return len(one_way) <= MOST_NORMALS and bool((one_way @ one_way.T).min() > TURNED_OVER + 1e-6)
 

@@ -8,33 +8,18 @@ is therefore named by the text of all kernels.
 import hashlib
 import os
 import shutil
-import sys
 import tempfile
 from functools import cache
 from pathlib import Path
 
 import numba
 
-from meshdrape import kernels
+from meshdrape.kernels import blas
 
 HERE = Path(__file__).parent
 PREFIX = "kernels-"
 
-
-def _without_blas():
-    """Have numba's functions of arrays, which it loads with its first kernel, not look for BLAS in scipy."""
-    place = "scipy.linalg.cython_blas"
-    if place in sys.modules:
-        return
-    sys.modules[place] = None
-    try:
-        import numba.np.arraymath  # noqa: F401
-    finally:
-        del sys.modules[place]
-
-
-if kernels.alone:
-    _without_blas()
+blas.leave_out_if_unwanted()
 
 
 def kernel(function=None, *, inline="never", nogil=False, lent=False):

@@ -64,7 +64,8 @@ def _close_pairs(points: Floats, distance: float) -> Ints:
             break
         pairs.append(np.stack([order[k], order[k + step]], axis=1))
     found = np.concatenate(pairs) if pairs else np.empty((0, 2), dtype=np.int64)
-    return found[np.linalg.norm(points[found[:, 0]] - points[found[:, 1]], axis=1) <= distance]
+    apart = np.linalg.norm(points[found[:, 0]] - points[found[:, 1]], axis=1)
+    return np.asarray(found[apart <= distance])
 
 
 def _merged(vertices: Floats, triangles: Ints, first: Ints) -> tuple[Floats, Ints]:

@@ -156,7 +156,7 @@ class Creases:
             return False
         at = np.searchsorted(vertices, ends)
         size = len(vertices)
-        if connected_parts(*at.T, size).any():
+        if connected_parts(at[:, 0], at[:, 1], size).any():
             return False
         # at each inner vertex the two edges, both seen leaving it, run nearly opposite ways
         along = self.surface.vertices[ends[:, 1]] - self.surface.vertices[ends[:, 0]]
