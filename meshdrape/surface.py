@@ -86,8 +86,8 @@ class Surface:
             If there are no triangles, an index is out of range, a coordinate is not finite, or an edge has more than
             two triangles, or two that run round it the same way.
         """
-        vertices = np.array(vertices, dtype=np.float64)
-        faces = np.array(faces, dtype=np.int64)
+        vertices = np.array(vertices, dtype=np.float64, order="C")
+        faces = np.array(faces, dtype=np.int64, order="C")
         if not len(faces):
             msg = "the surface has no triangles; it needs at least one"
             raise MouldError(msg)
@@ -97,29 +97,44 @@ class Surface:
         if not np.isfinite(vertices).all():
             msg = f"vertex {int(np.argmin(np.isfinite(vertices).all(axis=1)))} is not finite; export the mesh anew"
             raise MouldError(msg)
-        neighbour = _neighbours(faces, len(vertices))
+        neighbour = _neighbours(faces)
         rim = _rim(faces, neighbour, len(faces) if n_mould_faces is None else n_mould_faces)
         for array in (vertices, faces, neighbour, rim):
             array.setflags(write=False)
         return cls(vertices, faces, neighbour, rim)
 
-    @cached_property
-    def _corner_vectors(self) -> tuple[FloatArray, FloatArray]:
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return b - a, c - a
+    def continued(self, vertices: FloatArray, faces: IntArray, n_mould_faces: int) -> Surface:
+        """The surface with further vertices (k, 3), mm, and faces (l, 3), which follow its own.
+
+        What was measured of its faces one by one holds there too and is handed on.
+
+        Raises
+        ------
+        MouldError
+            As for :meth:`from_arrays`.
+        """
+        larger = Surface.from_arrays(
+            np.concatenate([self.vertices, vertices]), np.concatenate([self.faces, faces]), n_mould_faces
+        )
+        added = _facets(larger.vertices, larger.faces[len(self.faces) :])
+        facets = tuple(np.concatenate(pair) for pair in zip(self._facets, added, strict=True))
+        vars(larger)["_facets"] = facets
+        return larger
 
     @cached_property
+    def _facets(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unit normals (m, 3), areas (m,), mm2, and angles at the corners (m, 3), rad."""
+        return _facets(self.vertices, self.faces)
+
+    @property
     def face_normal(self) -> FloatArray:
         """Unit normals, (m, 3)."""
-        u, v = self._corner_vectors
-        normal = np.cross(u, v)
-        return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
+        return self._facets[0]
 
-    @cached_property
+    @property
     def face_area(self) -> FloatArray:
         """Areas, (m,), mm2."""
-        u, v = self._corner_vectors
-        return np.asarray(0.5 * np.linalg.norm(np.cross(u, v), axis=1))
+        return self._facets[1]
 
     @cached_property
     def area(self) -> float:
@@ -127,9 +142,20 @@ class Surface:
         return float(self.face_area.sum())
 
     @cached_property
+    def extent(self) -> FloatArray:
+        """Sides of the bounding box, (3,) mm."""
+        return np.asarray(np.ptp(self.vertices, axis=0))
+
+    @cached_property
     def diagonal(self) -> float:
         """Diagonal of the bounding box, mm."""
-        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+        return float(np.linalg.norm(self.extent))
+
+    @cached_property
+    def middle(self) -> SurfacePoint:
+        """The point of the surface nearest to its centroid."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return self.closest_point(np.average((a + b + c) / 3, axis=0, weights=self.face_area))[0]
 
     @cached_property
     def face_diameter(self) -> FloatArray:
@@ -142,14 +168,10 @@ class Surface:
         """Length of the longest edge, mm."""
         return float(self.face_diameter.max())
 
-    @cached_property
+    @property
     def corner_angle(self) -> FloatArray:
         """Angle of each face at each of its corners, (m, 3), rad."""
-        from meshdrape.kernels.unfold import corner_angles
-
-        angle = np.empty((len(self.faces), 3))
-        corner_angles(self.vertices, self.faces, angle)
-        return angle
+        return self._facets[2]
 
     @cached_property
     def vertex_angle(self) -> FloatArray:
@@ -213,17 +235,10 @@ class Surface:
     @cached_property
     def face_component(self) -> IntArray:
         """Number of the connected part each face belongs to, (m,), parts in order of their first face."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
+        from meshdrape.kernels.components import connected_parts
 
-        m = len(self.faces)
         face, k = np.nonzero(self.face_neighbour >= 0)
-        other = self.face_neighbour[face, k] // 3
-        _, label = connected_components(coo_array((np.ones(len(face)), (face, other)), shape=(m, m)), directed=False)
-        _, first = np.unique(label, return_index=True)
-        rank = np.empty(len(first), dtype=np.int64)
-        rank[label[np.sort(first)]] = np.arange(len(first))
-        return np.asarray(rank[label])
+        return connected_parts(face, self.face_neighbour[face, k] // 3, len(self.faces))
 
     @cached_property
     def mould_part(self) -> Surface:
@@ -252,11 +267,10 @@ class Surface:
 
     def closest_point(self, position: ArrayLike) -> tuple[SurfacePoint, float]:
         """The point of the surface nearest to `position` (3,), and its distance, mm. O(n_faces)."""
-        p = np.asarray(position, dtype=np.float64)
-        centre, radius = self._face_balls
-        away = np.linalg.norm(centre - p, axis=1)
-        # a face farther off than another's farthest point cannot be the nearest
-        near = np.flatnonzero(away - radius <= (away + radius).min())
+        from meshdrape.kernels.facets import may_be_nearest
+
+        p = np.array(position, dtype=np.float64)
+        near = may_be_nearest(self.vertices, self.faces, p)
         faces = self.faces[near]
         weights = _closest_on_triangles(p, *(self.vertices[faces[:, k]] for k in range(3)))
         found = np.einsum("mk,mkd->md", weights, self.vertices[faces])
@@ -264,38 +278,27 @@ class Surface:
         best = int(np.argmin(distance))
         return SurfacePoint(int(near[best]), weights[best]), float(distance[best])
 
-    @cached_property
-    def _face_balls(self) -> tuple[FloatArray, FloatArray]:
-        """Centres (m, 3) and radii (m,) of balls about the faces' centroids that hold them, mm."""
-        corners = self.vertices[self.faces]
-        centre = corners.mean(axis=1)
-        return centre, np.asarray(np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1))
-
 
 def _next_in_face(half: IntArray) -> IntArray:
     """The half-edge after each of 3 f + k, round the same face."""
     return np.asarray(half + np.where(half % 3 == 2, -2, 1))
 
 
-def _neighbours(faces: IntArray, n_vertices: int) -> IntArray:
+def _neighbours(faces: IntArray) -> IntArray:
     """3 g + l across each edge, (m, 3); -1 at a border."""
+    from meshdrape.kernels.facets import pair_edges
+
+    found = np.empty_like(faces)
+    if not pair_edges(faces, found):
+        _refuse(faces)
+    return found
+
+
+def _refuse(faces: IntArray) -> NoReturn:
+    """Name the first half-edge that there is twice."""
     tail = faces.ravel()
     head = faces[:, [1, 2, 0]].ravel()
-    key = np.minimum(tail, head) * n_vertices + np.maximum(tail, head)
-    order = np.argsort(key, kind="stable")
-    ordered, first = key[order], tail[order]
-    pair = np.flatnonzero(ordered[1:] == ordered[:-1])
-    # two half-edges over one edge, of opposite sense
-    if (np.diff(pair) == 1).any() or (first[pair] == first[pair + 1]).any():
-        _refuse(tail, head, n_vertices)
-    found = np.full(len(tail), -1, dtype=np.int64)
-    found[order[pair]], found[order[pair + 1]] = order[pair + 1], order[pair]
-    return found.reshape(-1, 3)
-
-
-def _refuse(tail: IntArray, head: IntArray, n_vertices: int) -> NoReturn:
-    """Name the first half-edge that there is twice."""
-    key = tail * n_vertices + head
+    key = tail * (int(faces.max()) + 1) + head
     order = np.argsort(key, kind="stable")
     repeated = np.flatnonzero(key[order][1:] == key[order][:-1])
     h = int(order[repeated[0]])
@@ -316,6 +319,15 @@ def _rim(faces: IntArray, neighbour: IntArray, n_mould_faces: int) -> NDArray[np
         shared = (across >= 0) & (across < 3 * n_mould_faces)
         rim[n_mould_faces:] = np.hstack([shared, on_mould]) @ (1 << np.arange(6))
     return rim
+
+
+def _facets(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    from meshdrape.kernels.facets import measure_facets
+
+    m = len(faces)
+    normal, area, angle = np.empty((m, 3)), np.empty(m), np.empty((m, 3))
+    measure_facets(vertices, faces, normal, area, angle)
+    return normal, area, angle
 
 
 def _unfold(surface: Surface) -> Unfolding:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from meshdrape.kernels.certify import TURNED_OVER
 from meshdrape.kernels.crowd import reach_of_crowds
+from meshdrape.kernels.facets import star_radii
 from meshdrape.kernels.flood import flood
 from meshdrape.kernels.tables import KEPT_OUT, Detours
 from meshdrape.surface import Surface
@@ -72,6 +73,8 @@ def _detours(surface: Surface, length: float) -> Detours:
 
 def _faces_one_way(normal: FloatArray) -> bool:
     """Whether no two normals (m, 3) are so far apart that a path could turn over; False where there are too many."""
+    if (normal @ normal[0]).min() <= TURNED_OVER + 1e-6:
+        return False
     one_way = np.unique(normal.round(9), axis=0)
     return len(one_way) <= MOST_NORMALS and bool((one_way @ one_way.T).min() > TURNED_OVER + 1e-6)
 
@@ -136,13 +139,8 @@ def _thinned(vertices: FloatArray, centre: IntArray, reach: FloatArray) -> tuple
 
 def _star_radius(surface: Surface) -> FloatArray:
     """(n,) distance from each vertex to the nearest line of the edges round it, mm."""
-    edge = np.linalg.norm(
-        surface.vertices[np.roll(surface.faces, -2, axis=1)] - surface.vertices[np.roll(surface.faces, -1, axis=1)],
-        axis=2,
-    )
-    height = 2 * surface.face_area[:, None] / edge
-    out = np.full(len(surface.vertices), np.inf)
-    np.minimum.at(out, surface.faces.ravel(), height.ravel())
+    out = np.empty(len(surface.vertices))
+    star_radii(surface.vertices, surface.faces, surface.face_area, out)
     return out
 
 

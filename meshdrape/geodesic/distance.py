@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import MouldError, StartError
-from meshdrape.geodesic.guarded import solve, solve_guarded
+from meshdrape.geodesic.guarded import answers_sooner, solve, solve_guarded
 from meshdrape.geodesic.patch import Patch, faces_between
 from meshdrape.geodesic.screen import DOUBTFUL, LOWEST, SAFE, screened
 from meshdrape.surface import Surface, SurfacePoint
@@ -50,7 +50,7 @@ def _screened_distances(patch: Patch, source: int, targets: list[int]) -> tuple[
         if not np.isin(ends, used).all():
             continue
         first, *others = np.searchsorted(used, ends).tolist()
-        solver = solve_guarded if clean.lowest < DOUBTFUL else solve
+        solver = solve_guarded if clean.lowest < DOUBTFUL or answers_sooner() else solve
         found = solver(vertices[used], compact.reshape(-1, 3), first, np.array(others))
         if np.isfinite(found).all():
             return found, clean.moved

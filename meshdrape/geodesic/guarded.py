@@ -65,6 +65,11 @@ def prepare() -> None:
     _SOLVER.start()
 
 
+def answers_sooner() -> bool:
+    """Whether the other process is there already and libigl, which takes a while to load, is not in this one."""
+    return _SOLVER.is_running() and "igl" not in sys.modules
+
+
 class _Solver:
     """The process, started when it is first needed and again when it has ended."""
 
@@ -93,8 +98,7 @@ class _Solver:
     def start(self) -> None:
         """Start the process unless it runs."""
         with self._lock:
-            # a forked process must not share its parent's
-            if self._process is not None and self._owner == os.getpid():
+            if self.is_running():
                 return
             known = os.pathsep.join(path for path in sys.path if path)
             self._process = subprocess.Popen(
@@ -105,6 +109,10 @@ class _Solver:
                 env={**os.environ, "PYTHONPATH": known},
             )
             self._owner = os.getpid()
+
+    def is_running(self) -> bool:
+        """Whether the process was started, and by this one: a forked process must not share its parent's."""
+        return self._process is not None and self._owner == os.getpid()
 
     def stop(self) -> None:
         """End the process, if it is ours."""

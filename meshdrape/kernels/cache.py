@@ -17,18 +17,31 @@ from pathlib import Path
 import numba
 from numba.core import event
 
+from meshdrape.kernels import blas
+
 HERE = Path(__file__).parent
 PREFIX = "kernels-"
 
+blas.leave_out_if_unwanted()
 
-def kernel(function=None, *, inline="never", nogil=False):
-    """A function for arrays, compiled when it is first called and kept for the next run."""
+
+def kernel(function=None, *, inline="never", nogil=False, lent=False):
+    """A function for arrays, compiled when it is first called and kept for the next run.
+
+    Parameters
+    ----------
+    lent : bool
+        Arrays are only lent to it: it makes none and does not count who holds those it is given. Where a small function
+        is called with all tables of a net, numba's counting takes several times as long as what the function does.
+    """
     if function is None:
-        return lambda function: kernel(function, inline=inline, nogil=nogil)
+        return lambda function: kernel(function, inline=inline, nogil=nogil, lent=lent)
     place, told = folder(), numba.config.CACHE_DIR
     try:
         numba.config.CACHE_DIR = str(place or told)
-        return numba.njit(cache=place is not None, error_model="numpy", inline=inline, nogil=nogil)(function)
+        return numba.njit(cache=place is not None, error_model="numpy", inline=inline, nogil=nogil, _nrt=not lent)(
+            function
+        )
     finally:
         numba.config.CACHE_DIR = told
 

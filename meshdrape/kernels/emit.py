@@ -29,14 +29,21 @@ def positions(mesh, net, i_first, out):
                 out[a, j, k] = frame[k] + x * frame[3 + k] + y * frame[6 + k]
 
 
-@kernel
-def node_tangent(mesh, net, start, family, i, j, spacing):
+@kernel(lent=True)
+def node_tangent(mesh, net, start, family, i, j, spacing, came):
     """Unit tangent of a fibre at a node, in the frame of its face: the mean of the edges before and after it.
 
     NaN where the fibre has no edge at the node. At the seed it is the fibre's own start: on a vertex the two halves
     need not be opposite.
+
+    came : (2,)
+        How the edge before arrives, NaN where that is to be found; gets how the edge after arrives at the next node,
+        NaN where that was not asked. Node after node, each edge is walked once.
     """
     n_warp, n_weft = net.status.shape
+    cx = came[0]
+    cy = came[1]
+    came[0] = math.nan
     if family == WARP:
         after = i + 1 < n_warp and net.status[i + 1, j] <= OFF_MOULD
         before = i > 0 and net.status[i - 1, j] <= OFF_MOULD
@@ -48,61 +55,65 @@ def node_tangent(mesh, net, start, family, i, j, spacing):
     dx = 0.0
     dy = 0.0
     if after:
-        px, py, _, _ = edge_ends(mesh, net, start, family, i, j, 1, spacing)
+        px, py, came[0], came[1] = edge_ends(mesh, net, start, family, i, j, 1, spacing)
         dx += px
         dy += py
     if before:
-        px, py, _, _ = edge_ends(mesh, net, start, family, i, j, -1, spacing)
-        dx -= px
-        dy -= py
+        if math.isnan(cx):
+            px, py, _, _ = edge_ends(mesh, net, start, family, i, j, -1, spacing)
+            cx = -px
+            cy = -py
+        dx += cx
+        dy += cy
     size = math.sqrt(dx * dx + dy * dy)
     if size == 0.0:
         return math.nan, math.nan
     return dx / size, dy / size
 
 
+@kernel(lent=True)
+def _tangent(mesh, net, start, family, i, j, spacing, came):
+    """The same; where one face holds the neighbours on both sides their chord is the mean of the two edges."""
+    f = net.face[i, j]
+    # the node before and the one after
+    bi, bj, ai, aj = (i - 1, j, i + 1, j) if family == WARP else (i, j - 1, i, j + 1)
+    if (
+        min(bi, bj) >= 0
+        and ai < net.status.shape[0]
+        and aj < net.status.shape[1]
+        and net.status[bi, bj] <= OFF_MOULD
+        and net.status[ai, aj] <= OFF_MOULD
+        and net.face[bi, bj] == f
+        and net.face[ai, aj] == f
+    ):
+        came[0] = math.nan
+        dx = net.xy[ai, aj, 0] - net.xy[bi, bj, 0]
+        dy = net.xy[ai, aj, 1] - net.xy[bi, bj, 1]
+        size = math.sqrt(dx * dx + dy * dy)
+        return dx / size, dy / size
+    return node_tangent(mesh, net, start, family, i, j, spacing, came)
+
+
 @kernel(nogil=True)
 def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
     """Unit tangents (rows, n_weft, 3) of the fibres at the nodes of the rows from i_first on; NaN without a node."""
-    n_warp, n_weft = net.status.shape
+    n_weft = net.status.shape[1]
+    # how the edges before arrive: of each warp at the row at hand, of the weft at the column
+    warp_came = np.full((n_weft, 2), math.nan)
+    weft_came = np.empty(2)
     for a in range(warp_out.shape[0]):
         i = i_first + a
+        weft_came[0] = math.nan
         for j in range(n_weft):
             if net.status[i, j] > OFF_MOULD:
                 warp_out[a, j, :] = math.nan
                 weft_out[a, j, :] = math.nan
+                warp_came[j, 0] = math.nan
+                weft_came[0] = math.nan
                 continue
-            f = net.face[i, j]
-            frame = mesh.frame[f]
-            # where one face holds the neighbours on both sides their chord is the mean of the two edges
-            if (
-                0 < i < n_warp - 1
-                and net.status[i - 1, j] <= OFF_MOULD
-                and net.status[i + 1, j] <= OFF_MOULD
-                and net.face[i - 1, j] == f
-                and net.face[i + 1, j] == f
-            ):
-                px = net.xy[i + 1, j, 0] - net.xy[i - 1, j, 0]
-                py = net.xy[i + 1, j, 1] - net.xy[i - 1, j, 1]
-                size = math.sqrt(px * px + py * py)
-                px /= size
-                py /= size
-            else:
-                px, py = node_tangent(mesh, net, start, WARP, i, j, warp)
-            if (
-                0 < j < n_weft - 1
-                and net.status[i, j - 1] <= OFF_MOULD
-                and net.status[i, j + 1] <= OFF_MOULD
-                and net.face[i, j - 1] == f
-                and net.face[i, j + 1] == f
-            ):
-                qx = net.xy[i, j + 1, 0] - net.xy[i, j - 1, 0]
-                qy = net.xy[i, j + 1, 1] - net.xy[i, j - 1, 1]
-                size = math.sqrt(qx * qx + qy * qy)
-                qx /= size
-                qy /= size
-            else:
-                qx, qy = node_tangent(mesh, net, start, WEFT, i, j, weft)
+            frame = mesh.frame[net.face[i, j]]
+            px, py = _tangent(mesh, net, start, WARP, i, j, warp, warp_came[j])
+            qx, qy = _tangent(mesh, net, start, WEFT, i, j, weft, weft_came)
             for k in range(3):
                 warp_out[a, j, k] = px * frame[3 + k] + py * frame[6 + k]
                 weft_out[a, j, k] = qx * frame[3 + k] + qy * frame[6 + k]
@@ -115,7 +126,7 @@ def border_status(mesh, face, xy, slack, out):
         out[n] = OFF_MOULD if off_mould(mesh, face[n], xy[n, 0], xy[n, 1], slack) else 0
 
 
-@kernel
+@kernel(lent=True)
 def _crosses_mould(mesh, face, x, y, dx, dy, length):
     """Whether the straight path from (x, y) touches a face of the mould."""
     entered = -1
@@ -191,7 +202,7 @@ def _touching_by_corner(status, i_first, out):
             out[a, j] = (high <= OFF_MOULD) & (low == 0)
 
 
-@kernel
+@kernel(lent=True)
 def _edge_touches(mesh, net, start, family, i, j, length):
     """Whether the edge that leaves (i, j) for larger indices crosses a face of the mould, 1 or 0."""
     dx, dy, _, _ = edge_ends(mesh, net, start, family, i, j, 1, length)

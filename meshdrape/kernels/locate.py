@@ -49,7 +49,7 @@ def first_nodes(mesh, net, out):
                     tail += 1
 
 
-@kernel
+@kernel(lent=True)
 def _one_plane(mesh, f, g):
     """Whether two faces are turned against each other by less than the angle of a crease."""
     a = mesh.frame[f]
@@ -69,7 +69,7 @@ def _node(mesh, net, i, j, out):
         out[k] = frame[k] + net.xy[i, j, 0] * frame[3 + k] + net.xy[i, j, 1] * frame[6 + k]
 
 
-@kernel
+@kernel(lent=True)
 def _faces_alike(mesh, net, i, j, normal):
     """Whether a corner of the cell lies on a face turned to the same side as a normal."""
     for corner in range(4):
@@ -82,7 +82,7 @@ def _faces_alike(mesh, net, i, j, normal):
     return False
 
 
-@kernel
+@kernel(lent=True)
 def _solve(px, py, pz, n, a, u, v):
     """Coordinates (alpha, beta) of a point from corner a along u and v, seen along the unit normal n."""
     rx = px - a[0]
@@ -97,7 +97,7 @@ def _solve(px, py, pz, n, a, u, v):
     return rv / uv, ur / uv
 
 
-@kernel
+@kernel(lent=True)
 def _climb(mesh, net, i, j, px, py, pz, normal, a, u, v):
     """From the cell (i, j) on to the one that a point seems to lie on, seen along a normal.
 
@@ -157,7 +157,7 @@ def _climb(mesh, net, i, j, px, py, pz, normal, a, u, v):
     return -1, -1
 
 
-@kernel
+@kernel(lent=True)
 def _lies(mesh, net, i, j, face, point, normal, warp, weft, corner, share):
     """Whether a point lies on the cell (i, j), if it is whole; `share` (2,) gets its coordinates there, 0 to 1."""
     if not is_whole(net.status, i, j) or not _faces_alike(mesh, net, i, j, normal):
@@ -279,7 +279,7 @@ def search_cells(mesh, net, warp, weft, face, point, normal, missed, cell, share
                         share[q] = told
 
 
-@kernel
+@kernel(lent=True)
 def _gap2(mesh, net, i, j, point, place):
     """Square of the distance in space between a node and a point, mm2."""
     _node(mesh, net, i, j, place)
@@ -304,6 +304,7 @@ def fibres_on_cells(mesh, net, start, warp, weft, tangent, normal, cell, share, 
     warp_out, weft_out : (n, 3)
         Get unit vectors.
     """
+    came = np.empty(2)
     for q in range(len(cell)):
         i = cell[q, 0]
         j = cell[q, 1]
@@ -332,7 +333,8 @@ def fibres_on_cells(mesh, net, start, warp, weft, tangent, normal, cell, share, 
                         sy += weight * tangent[family, ci, cj, 1]
                         sz += weight * tangent[family, ci, cj, 2]
                     continue
-                tx, ty = node_tangent(mesh, net, start, family, ci, cj, warp if family == WARP else weft)
+                came[0] = math.nan
+                tx, ty = node_tangent(mesh, net, start, family, ci, cj, warp if family == WARP else weft, came)
                 if math.isnan(tx):
                     continue
                 sx += weight * (tx * g[3] + ty * g[6])

@@ -45,7 +45,7 @@ def spread_on_faces(net, window, diameter, spacing):
     return False
 
 
-@kernel
+@kernel(lent=True)
 def _may_lie(position, kept, i, j, ci, cj, a, b, normal, warp, weft, to):
     """Whether the node (i, j) can lie on the whole cell (ci, cj), of whose corners (a, b) is the nearest.
 

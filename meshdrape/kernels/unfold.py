@@ -96,23 +96,3 @@ def join(corner, neighbour, line, crossing, plane):
             plane[f, 9 + n] = crossing[f, n]
         for n in range(3):
             plane[f, 21 + n] = corner[f, n]
-
-
-@kernel
-def corner_angles(vertices, faces, angle):
-    """Angle of each face at each of its corners, rad: fills `angle` (m, 3)."""
-    for f in range(len(faces)):
-        for k in range(3):
-            a = faces[f, k]
-            b = faces[f, (k + 1) % 3]
-            c = faces[f, (k + 2) % 3]
-            ux = vertices[b, 0] - vertices[a, 0]
-            uy = vertices[b, 1] - vertices[a, 1]
-            uz = vertices[b, 2] - vertices[a, 2]
-            vx = vertices[c, 0] - vertices[a, 0]
-            vy = vertices[c, 1] - vertices[a, 1]
-            vz = vertices[c, 2] - vertices[a, 2]
-            nx = uy * vz - uz * vy
-            ny = uz * vx - ux * vz
-            nz = ux * vy - uy * vx
-            angle[f, k] = math.atan2(math.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uz * vz + uy * vy)

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.kernels.components import connected_parts
+
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -81,7 +83,7 @@ def fans(triangles: Ints, joints: Joints) -> Ints:
     following = np.arange(triangles.size).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     # across an edge the corners at either of its ends belong to one fan
     start, end = np.where(alike, other, following[other]), np.where(alike, following[other], other)
-    return _parts(np.concatenate([one, following[one]]), np.concatenate([start, end]), triangles.size)
+    return connected_parts(np.concatenate([one, following[one]]), np.concatenate([start, end]), triangles.size)
 
 
 def misfacing(triangles: Ints, joints: Joints) -> tuple[Bools, Bools, Ints]:
@@ -104,22 +106,13 @@ def misfacing(triangles: Ints, joints: Joints) -> tuple[Bools, Bools, Ints]:
     face, neighbour = joints.one // 3, joints.other // 3
     across = np.where(joints.alike, m + neighbour, neighbour)
     back = np.where(joints.alike, neighbour, m + neighbour)
-    part = _parts(np.concatenate([face, m + face]), np.concatenate([across, back]), 2 * m)
+    part = connected_parts(np.concatenate([face, m + face]), np.concatenate([across, back]), 2 * m)
     half, turned = part[:m], part[m:]
     one_sided = half == turned
     size = np.bincount(half, minlength=2 * m)
     # numbers of parts go up with their first member
     lesser = (size[half] < size[turned]) | ((size[half] == size[turned]) & (half > turned))
     return lesser, one_sided, half
-
-
-def _parts(a: Ints, b: Ints, n: int) -> Ints:
-    """Return the number of the connected part each of n things is in, given pairs of them that are joined."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(a)), (a, b)), shape=(n, n))
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def _dot(a: Floats, b: Floats) -> Floats:

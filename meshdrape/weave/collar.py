@@ -48,9 +48,8 @@ def extended(surface: Surface, depth: float) -> Surface:
     n_mould_faces = len(surface.faces)
     notches = without_notches(surface, depth)
     if len(notches):
-        surface = Surface.from_arrays(surface.vertices, np.concatenate([surface.faces, notches]), n_mould_faces)
-    vertices = [surface.vertices]
-    faces = [surface.faces]
+        surface = surface.continued(np.empty((0, 3)), notches, n_mould_faces)
+    vertices, faces = [], []
     count = len(surface.vertices)
     for loop in surface.border_loops:
         if surface.is_hole(loop):
@@ -60,9 +59,9 @@ def extended(surface: Surface, depth: float) -> Surface:
         vertices.append(new_vertices)
         faces.append(new_faces)
         count += len(new_vertices)
-    if len(faces) == 1:
+    if not faces:
         return surface
-    return Surface.from_arrays(np.concatenate(vertices), np.concatenate(faces), n_mould_faces=n_mould_faces)
+    return surface.continued(np.concatenate(vertices), np.concatenate(faces), n_mould_faces)
 
 
 def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[FloatArray, IntArray]:
@@ -99,20 +98,24 @@ def _strip(surface: Surface, loop: IntArray, depth: float, first: int) -> tuple[
     onward = [reach * _dot(ray, along) for ray, reach in rays]
     arrived = [reach * _dot(ray, _last(along)) for ray, reach in rays]
     shrink = np.ones(len(loop))
+    anew = True
     for _ in range(MOST_ROUNDS):
-        chosen, fan = ruled, (turn > FAN_FROM) & ~ruled
+        if anew:
+            chosen, fan = ruled, (turn > FAN_FROM) & ~ruled
+            ends, begins = _next(np.where(ruled, arrived[1], arrived[0])), np.where(ruled, onward[1], onward[0])
+            no_family = ruled & (angle < CREASE) & ~_in_family(ruled, apart)
+            crossed = ruled & _next(ruled) & apart
         used = np.where(fan, 0.0, shrink)  # a fan begins and ends square to its edges
-        outer = length + _next(used * np.where(ruled, arrived[1], arrived[0]))
-        outer -= used * np.where(ruled, onward[1], onward[0])
+        outer = length + _next(used) * ends - used * begins
         folded = outer < OUTER_EDGE_SHARE * length
         if not folded.any():
             break
         touched = folded | _last(folded)
         # planes of a doubly curved border meet at random: a ruling that is not one of a family is worse than a mitre
-        crossing = folded & ruled & _next(ruled) & apart
-        stray = crossing | _last(crossing) | (touched & ruled & ~_in_family(ruled, apart))
-        stray &= ruled & (angle < CREASE)
-        if stray.any():
+        crossing = folded & crossed
+        stray = ((crossing | _last(crossing)) & ruled & (angle < CREASE)) | (touched & no_family)
+        anew = bool(stray.any())
+        if anew:
             ruled = ruled & ~stray
         else:
             shrink = np.where(touched, 0.8 * shrink, shrink)

@@ -7,7 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.kernels.facets import chords
 from meshdrape.surface import Surface
+
+FloatArray = NDArray[np.float64]
 
 # Normals that differ by more than this, rad, make an edge of any mesh a crease: facets of a curved face stay below.
 CREASE_ANGLE = math.radians(20.0)
@@ -31,10 +34,14 @@ def crease_edges(
     angle_tolerance : float, optional
         Of the tessellation, rad.
     """
-    angle = _edge_angle(surface)
-    other = cad_face[surface.face_neighbour // 3]
-    least = np.where(cad_face[:, None] != other, max(CAD_CREASE_ANGLE, 2.0 * (angle_tolerance or 0.0)), CREASE_ANGLE)
-    return np.asarray(angle > np.minimum(least, CREASE_ANGLE))
+    crease = np.zeros(surface.faces.shape, dtype=np.bool_)
+    chord = _edge_chord(surface, 0)
+    # few edges of a smooth mesh turn by so much at all; a little more are looked at, for round-off of the chord
+    face, k = np.nonzero(chord > 0.99 * _chord(CAD_CREASE_ANGLE))
+    between = cad_face[face] != cad_face[surface.face_neighbour[face, k] // 3]
+    least = np.where(between, max(CAD_CREASE_ANGLE, 2.0 * (angle_tolerance or 0.0)), CREASE_ANGLE)
+    crease[face, k] = _angle(chord[face, k]) > np.minimum(least, CREASE_ANGLE)
+    return crease
 
 
 def continued(surface: Surface, crease: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -55,14 +62,24 @@ def continued(surface: Surface, crease: NDArray[np.bool_]) -> NDArray[np.bool_]:
     touches = on_crease[outer] | on_crease[np.roll(outer, -1, axis=1)]
     # between two faces of the extension: the border itself is none
     inner = surface.face_neighbour[n:] >= 3 * n
-    return np.concatenate([crease, touches & inner & (_edge_angle(surface)[n:] > CAD_CREASE_ANGLE)])
+    return np.concatenate([crease, touches & inner & (_angle(_edge_chord(surface, n)) > CAD_CREASE_ANGLE)])
 
 
-def _edge_angle(surface: Surface) -> NDArray[np.float64]:
-    """Angle between the normals on both sides of each edge of each face, (m, 3) rad; 0 at a border."""
-    inner = surface.face_neighbour >= 0
-    normal = surface.face_normal
-    other = normal[np.where(inner, surface.face_neighbour // 3, 0)]
-    # the chord between two unit vectors is twice the sine of half their angle: sharp for small angles too
-    chord = np.linalg.norm(other - normal[:, None], axis=2)
-    return np.asarray(np.where(inner, 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)), 0.0))
+def _edge_chord(surface: Surface, first: int) -> FloatArray:
+    """Chord between the unit normals on both sides of each edge of the faces from `first` on, (m - first, 3).
+
+    Twice the sine of half the angle between them, so sharp for small angles too; 0 at a border.
+    """
+    chord = np.empty((len(surface.faces) - first, 3))
+    chords(surface.face_normal, surface.face_neighbour, first, chord)
+    return chord
+
+
+def _angle(chord: FloatArray) -> FloatArray:
+    """Angle that a chord of the unit circle spans, rad."""
+    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)))
+
+
+def _chord(angle: float) -> float:
+    """Chord of the unit circle that spans an angle, rad."""
+    return 2.0 * math.sin(0.5 * angle)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels import crossings
+from meshdrape.kernels.components import connected_parts
 from meshdrape.kernels.edges import WARP
 from meshdrape.surface import Surface
 from meshdrape.weave.net import Net
@@ -139,23 +140,25 @@ def _seed_vertex(net: Net) -> int:
 
 def _vertex_cells(surface: Surface, nearest: FloatArray, cell: IntArray, on_fibre: NDArray[np.bool_]) -> IntArray:
     """Cell (i, j) each vertex lies in, (n, 2); -1 where it lies on a fibre or under no cloth."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(surface.vertices)
     tail = surface.faces.ravel()
     head = np.roll(surface.faces, -1, axis=1).ravel()
     free = ~on_fibre
-    joined = np.isinf(nearest) & free[tail] & free[head]
-    ends = (tail[joined], head[joined])
-    _, region = connected_components(coo_array((np.ones(len(ends[0])), ends), shape=(n, n)), directed=False)
-    told = np.isfinite(nearest) & free[tail]
-    # what most of a region's crossings say: an edge through a node may be first by round-off alone
-    votes, count = np.unique(np.column_stack([region[tail[told]], cell[told]]), axis=0, return_counts=True)
-    order = np.lexsort((-count, votes[:, 0]))
-    first = np.unique(votes[order, 0], return_index=True)
+    crossed = np.isfinite(nearest)
+    joined = np.flatnonzero(~crossed & free[tail] & free[head])
+    region = connected_parts(tail[joined], head[joined], len(surface.vertices))
+    told = np.flatnonzero(crossed & free[tail])
     found = np.full((int(region.max()) + 1, 2), -1)
-    found[first[0]] = votes[order][first[1], 1:]
+    if len(told):
+        # a region and a cell as one number, in the order of both; a cell may lie one before the first
+        rows, columns = (cell[told].max(axis=0) + 2).tolist()
+        vote = (region[tail[told]] * rows + cell[told, 0] + 1) * columns + cell[told, 1] + 1
+        votes, count = np.unique(vote, return_counts=True)
+        of, voted = np.divmod(votes, rows * columns)
+        begins = np.flatnonzero(np.diff(of, prepend=-1))
+        # what most of a region's crossings say: an edge through a node may be first by round-off alone
+        most = np.repeat(np.maximum.reduceat(count, begins), np.diff(begins, append=len(of)))
+        elected = np.minimum.reduceat(np.where(count == most, np.arange(len(of)), len(of)), begins)
+        found[of[begins]] = np.stack(np.divmod(voted[elected], columns), axis=1) - 1
     home = found[region]
     home[on_fibre] = -1
     return np.asarray(home)

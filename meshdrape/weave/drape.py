@@ -116,7 +116,7 @@ def drape(
     whole = mould.surface
     asked = seed is not None
     if seed is None:
-        seed = whole.closest_point(default_seed(whole) if drawn is None else drawn[0])[0].position(whole)
+        seed = (whole.middle if drawn is None else whole.closest_point(drawn[0])[0]).position(whole)
     seed = np.asarray(seed, dtype=np.float64)
     # NaN fails the comparison too
     if seed.shape != (3,) or not (np.abs(seed) <= FARTHEST).all():
@@ -184,16 +184,9 @@ def drape(
     )
 
 
-def default_seed(surface: Surface) -> FloatArray:
-    """The centroid of the surface, (3,) mm: projected, it is a seed near the middle of the mould."""
-    centres = surface.vertices[surface.faces].mean(axis=1)
-    return np.asarray(np.average(centres, axis=0, weights=surface.face_area))
-
-
 def default_direction(surface: Surface, face: int) -> FloatArray:
     """The longest side of the bounding box that runs along the surface at a face rather than off it, (3,)."""
-    extent = np.ptp(surface.vertices, axis=0)
-    for axis in np.argsort(-extent):
+    for axis in np.argsort(-surface.extent):
         along = np.eye(3)[axis]
         if abs(float(along @ surface.face_normal[face])) < math.cos(math.radians(30.0)):
             return np.asarray(along)

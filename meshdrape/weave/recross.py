@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from meshdrape.kernels.components import connected_parts
 from meshdrape.kernels.recross import MOST, returning_warps, returning_wefts
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
@@ -118,14 +119,8 @@ class Creases:
     @cached_property
     def region(self) -> IntArray:
         """Number of the region of each face, (m,)."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        m = len(self.surface.faces)
         face, k = np.nonzero((self.surface.face_neighbour >= 0) & ~self.crease)
-        other = self.surface.face_neighbour[face, k] // 3
-        _, label = connected_components(coo_array((np.ones(len(face)), (face, other)), shape=(m, m)), directed=False)
-        return np.asarray(label, dtype=np.int64)
+        return connected_parts(face, self.surface.face_neighbour[face, k] // 3, len(self.surface.faces))
 
     @cached_property
     def edges(self) -> tuple[IntArray, IntArray]:
@@ -141,10 +136,14 @@ class Creases:
     @cached_property
     def returns(self) -> NDArray[np.bool_]:
         """Whether two regions meet in one crease that is open, and so must not be crossed twice, (r, r)."""
-        n = int(self.region.max()) + 1 if len(self.region) else 0
+        none = np.zeros((0, 0), dtype=np.bool_)
+        # most moulds have no crease, and then nobody asks for their regions
+        if not self.crease.any():
+            return none
+        n = int(self.region.max()) + 1
         ends, pairs = self.edges
         if not len(ends) or n > MOST_REGIONS:
-            return np.zeros((0, 0), dtype=np.bool_)
+            return none
         returns = np.zeros((n, n), dtype=np.bool_)
         for a, b in np.unique(pairs, axis=0).tolist():
             returns[a, b] = returns[b, a] = self._one_open_line(ends[(pairs == (a, b)).all(axis=1)])
@@ -155,13 +154,9 @@ class Creases:
         vertices, count = np.unique(ends, return_counts=True)
         if (count > 2).any() or np.count_nonzero(count == 1) != 2:
             return False
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
         at = np.searchsorted(vertices, ends)
         size = len(vertices)
-        parts, _ = connected_components(coo_array((np.ones(len(at)), at.T), shape=(size, size)), directed=False)
-        if parts != 1:
+        if connected_parts(at[:, 0], at[:, 1], size).any():
             return False
         # at each inner vertex the two edges, both seen leaving it, run nearly opposite ways
         along = self.surface.vertices[ends[:, 1]] - self.surface.vertices[ends[:, 0]]

@@ -10,7 +10,7 @@ import pytest
 
 import meshdrape
 
-CACHE = Path(meshdrape.__file__).parent / "kernels" / "cache.py"
+KERNELS = Path(meshdrape.__file__).parent / "kernels"
 INNER = "from meshdrape.kernels.cache import kernel\n@kernel\ndef inner(x):\n    return x + {}\n"
 OUTER = (
     "from meshdrape.kernels.cache import kernel\nfrom meshdrape.kernels.inner import inner\n"
@@ -34,7 +34,8 @@ def kernels(tmp_path: Path) -> Path:
     folder.mkdir(parents=True)
     for empty in (folder.parent, folder):
         (empty / "__init__.py").touch()
-    shutil.copy(CACHE, folder)
+    for name in ("cache.py", "blas.py"):
+        shutil.copy(KERNELS / name, folder)
     (folder / "inner.py").write_text(INNER.format(1))
     (folder / "outer.py").write_text(OUTER)
     return folder
