@@ -65,9 +65,24 @@ def _detours(surface: Surface, length: float) -> Detours:
     faces = surface.faces
     wary = ((surface.corner_angle > np.pi - half[faces]) | (keep_out[faces] > 0)).any(axis=1)
     if not corner.any() and _faces_one_way(surface.face_normal):
-        corner = np.empty((0, 3))
-        return Detours(corner, np.asarray(wary), corner)
-    return Detours(corner[faces], np.asarray(wary), surface.face_normal)
+        nothing = np.empty((0, 3))
+        return Detours(nothing, np.asarray(wary), np.zeros((len(faces), 6), dtype=np.float32), nothing)
+    return Detours(corner[faces], np.asarray(wary), _beside(surface, corner), surface.face_normal)
+
+
+def _beside(surface: Surface, corner: FloatArray) -> NDArray[np.float32]:
+    """(m, 6) of `Detours`, from its entries (n,) for each vertex."""
+    beside = np.zeros((len(surface.faces), 6), dtype=np.float32)
+    far = surface.faces[:, [2, 0, 1]]
+    beside[:, ::2] = np.where((corner < 0) | (corner >= KEPT_OUT), np.inf, corner)[far]
+    normal = surface.face_normal
+    for k in range(3):
+        over = surface.face_neighbour[:, k]
+        across = normal[np.maximum(over, 0) // 3]
+        # the chord is the better conditioned for small angles
+        chord = np.linalg.norm(across - normal, axis=1)
+        beside[:, 2 * k + 1] = np.where(over >= 0, 2 * np.arcsin(np.minimum(0.5 * chord, 1.0)), 0.0)
+    return beside
 
 
 def _faces_one_way(normal: FloatArray) -> bool:

@@ -18,7 +18,7 @@ from meshdrape.kernels.place import (
     place,
 )
 from meshdrape.kernels.shear import past_stop
-from meshdrape.kernels.walk import WALKED, off_mould, walk
+from meshdrape.kernels.walk import WALKED, holds, off_mould, walk
 
 STOPPED = 5
 NOT_REACHED = 8
@@ -76,6 +76,7 @@ def sweep(
     frame = mesh.frame
     vertex = mesh.vertex
     rim = mesh.rim
+    beside = detours.beside
     detour = detours.corner
     wary = detours.wary
     normal = detours.normal
@@ -158,9 +159,7 @@ def sweep(
                 gy = yb + weft * vy - y
                 if (
                     gx * gx + gy * gy <= tolerance2
-                    and plane[fa, 0] * x + plane[fa, 1] * y >= plane[fa, 2]
-                    and plane[fa, 3] * x + plane[fa, 4] * y >= plane[fa, 5]
-                    and plane[fa, 6] * x + plane[fa, 7] * y >= plane[fa, 8]
+                    and holds(plane, fa, x, y)
                     and (ux * vy - uy * vx) * side > FOLD_SINE
                     and not (stopping and not least <= ux * vx + uy * vy <= most)
                 ):
@@ -222,6 +221,7 @@ def sweep(
                 neighbour,
                 frame,
                 vertex,
+                beside,
                 detour,
                 normal,
                 fa,
