@@ -25,6 +25,8 @@ MARGIN, CROWD_MARGIN = 1.5, 2.0
 SPREAD = 1.0
 # Normals compared each with each, at most.
 MOST_NORMALS = 3000
+# A drape of one spacing needs two tables at most: its own, and that of the coarse net which tells how far it reaches.
+TABLES_KEPT = 2
 # Boxes along an axis, so that their numbers stay below 2^63.
 MOST_BOXES = 2.0**20
 # Crowds whose centres lie within this part of their reach of one another are taken as one.
@@ -32,17 +34,20 @@ ALIKE = 0.25
 
 
 def detours(surface: Surface, length: float) -> Detours:
-    """Tables by which kernels suspect that a path of at most `length`, mm, has a shorter way; kept for the next call.
+    """Tables by which kernels suspect that a path of at most `length`, mm, has a shorter way; the last ones are kept.
 
     A vertex of angle defect d offers a shorter way to a path whose ends it sees, on the path's side, at an angle of
     more than pi - d / 2. Vertices that stand close together act as one; how far from their middle a path is suspect
     depends on its length, and is given to all vertices there as a radius to keep out of.
     """
     kept: dict[float, Detours] = vars(surface).setdefault("_detours", {})
-    if length not in kept:
-        kept.clear()
-        kept[length] = _detours(surface, length)
-    return kept[length]
+    table = kept.pop(length, None)
+    if table is None:
+        table = _detours(surface, length)
+        while len(kept) >= TABLES_KEPT:
+            kept.pop(next(iter(kept)))
+    kept[length] = table
+    return table
 
 
 def _detours(surface: Surface, length: float) -> Detours:
@@ -73,15 +78,12 @@ def _detours(surface: Surface, length: float) -> Detours:
 def _beside(surface: Surface, corner: FloatArray) -> NDArray[np.float32]:
     """(m, 6) of `Detours`, from its entries (n,) for each vertex."""
     beside = np.zeros((len(surface.faces), 6), dtype=np.float32)
-    far = surface.faces[:, [2, 0, 1]]
-    beside[:, ::2] = np.where((corner < 0) | (corner >= KEPT_OUT), np.inf, corner)[far]
+    beside[:, ::2] = np.where((corner < 0) | (corner >= KEPT_OUT), np.inf, corner)[surface.faces[:, [2, 0, 1]]]
     normal = surface.face_normal
     for k in range(3):
         over = surface.face_neighbour[:, k]
-        across = normal[np.maximum(over, 0) // 3]
-        # the chord is the better conditioned for small angles
-        chord = np.linalg.norm(across - normal, axis=1)
-        beside[:, 2 * k + 1] = np.where(over >= 0, 2 * np.arcsin(np.minimum(0.5 * chord, 1.0)), 0.0)
+        cosine = np.einsum("md,md->m", normal, normal[np.maximum(over, 0) // 3])
+        beside[:, 2 * k + 1] = np.where(over >= 0, np.arccos(np.clip(cosine, -1.0, 1.0)), 0.0)
     return beside
 
 
@@ -151,11 +153,9 @@ def _thinned(vertices: FloatArray, centre: IntArray, reach: FloatArray) -> tuple
 
 def _star_radius(surface: Surface) -> FloatArray:
     """(n,) distance from each vertex to the nearest line of the edges round it, mm."""
-    edge = np.linalg.norm(
-        surface.vertices[np.roll(surface.faces, -2, axis=1)] - surface.vertices[np.roll(surface.faces, -1, axis=1)],
-        axis=2,
-    )
-    height = 2 * surface.face_area[:, None] / edge
+    x1, x2, y2 = surface.unfolding.corner.T
+    # twice the area over the side across from each corner
+    height = (x1 * y2)[:, None] / np.stack([np.hypot(x2 - x1, y2), np.hypot(x2, y2), x1], axis=1)
     out = np.full(len(surface.vertices), np.inf)
     np.minimum.at(out, surface.faces.ravel(), height.ravel())
     return out

@@ -90,6 +90,8 @@ def sweep(
     i0 = start.origin[0]
     j0 = start.origin[1]
     tolerance2 = tolerance * tolerance
+    per_warp = 1.0 / warp
+    per_weft = 1.0 / weft
     side = float(si * sj)
     stopping = stop_at < math.pi
     angle = initial_angle if side > 0.0 else math.pi - initial_angle
@@ -142,10 +144,10 @@ def sweep(
             at_seed = ia == i0 and jb == j0
             if fa == fb and fa == fd and not wary[fa] and not at_seed and not every:
                 # the planar fourth corner of the rhombus, if this triangle holds it
-                ux = (xb - xy[ia, jb, 0]) / warp
-                uy = (yb - xy[ia, jb, 1]) / warp
-                vx = (xa - xy[ia, jb, 0]) / weft
-                vy = (ya - xy[ia, jb, 1]) / weft
+                ux = (xb - xy[ia, jb, 0]) * per_warp
+                uy = (yb - xy[ia, jb, 1]) * per_warp
+                vx = (xa - xy[ia, jb, 0]) * per_weft
+                vy = (ya - xy[ia, jb, 1]) * per_weft
                 # edges keep their exact length: renew the unit vectors by one Newton step of 1/sqrt
                 scale = 1.5 - 0.5 * (ux * ux + uy * uy)
                 ux *= scale
