@@ -26,6 +26,8 @@ MARGIN, CROWD_MARGIN = 1.5, 2.0
 SPREAD = 1.0
 # Normals compared each with each, at most.
 MOST_NORMALS = 3000
+# A drape of one spacing needs two tables at most: its own, and that of the coarse net which tells how far it reaches.
+TABLES_KEPT = 2
 # Boxes along an axis, so that their numbers stay below 2^63.
 MOST_BOXES = 2.0**20
 # Crowds whose centres lie within this part of their reach of one another are taken as one.
@@ -33,17 +35,20 @@ ALIKE = 0.25
 
 
 def detours(surface: Surface, length: float) -> Detours:
-    """Tables by which kernels suspect that a path of at most `length`, mm, has a shorter way; kept for the next call.
+    """Tables by which kernels suspect that a path of at most `length`, mm, has a shorter way; the last ones are kept.
 
     A vertex of angle defect d offers a shorter way to a path whose ends it sees, on the path's side, at an angle of
     more than pi - d / 2. Vertices that stand close together act as one; how far from their middle a path is suspect
     depends on its length, and is given to all vertices there as a radius to keep out of.
     """
     kept: dict[float, Detours] = vars(surface).setdefault("_detours", {})
-    if length not in kept:
-        kept.clear()
-        kept[length] = _detours(surface, length)
-    return kept[length]
+    table = kept.pop(length, None)
+    if table is None:
+        table = _detours(surface, length)
+        while len(kept) >= TABLES_KEPT:
+            kept.pop(next(iter(kept)))
+    kept[length] = table
+    return table
 
 
 def _detours(surface: Surface, length: float) -> Detours:
@@ -66,9 +71,21 @@ def _detours(surface: Surface, length: float) -> Detours:
     faces = surface.faces
     wary = ((surface.corner_angle > np.pi - half[faces]) | (keep_out[faces] > 0)).any(axis=1)
     if not corner.any() and _faces_one_way(surface.face_normal):
-        corner = np.empty((0, 3))
-        return Detours(corner, np.asarray(wary), corner)
-    return Detours(corner[faces], np.asarray(wary), surface.face_normal)
+        nothing = np.empty((0, 3))
+        return Detours(nothing, np.asarray(wary), np.zeros((len(faces), 6), dtype=np.float32), nothing)
+    return Detours(corner[faces], np.asarray(wary), _beside(surface, corner), surface.face_normal)
+
+
+def _beside(surface: Surface, corner: FloatArray) -> NDArray[np.float32]:
+    """(m, 6) of `Detours`, from its entries (n,) for each vertex."""
+    beside = np.zeros((len(surface.faces), 6), dtype=np.float32)
+    beside[:, ::2] = np.where((corner < 0) | (corner >= KEPT_OUT), np.inf, corner)[surface.faces[:, [2, 0, 1]]]
+    normal = surface.face_normal
+    for k in range(3):
+        over = surface.face_neighbour[:, k]
+        cosine = np.einsum("md,md->m", normal, normal[np.maximum(over, 0) // 3])
+        beside[:, 2 * k + 1] = np.where(over >= 0, np.arccos(np.clip(cosine, -1.0, 1.0)), 0.0)
+    return beside
 
 
 def _faces_one_way(normal: FloatArray) -> bool:

@@ -9,6 +9,8 @@ from meshdrape.kernels.walk import MAX_CROSSINGS
 # A path over which the surface turns by more than about 100 degrees may lie on a tube, with another way round the back.
 # One sharp crease turns it by 90.
 TURNED_OVER = -0.17
+# Turns at the edges crossed that add up to less, rad, turn nothing over: TURNED_OVER is the cosine of 1.742.
+MOST_TURN = 1.74
 # Vertices that give less than this part of the turn are not counted.
 LEAST_DOUBT = 0.01
 
@@ -41,6 +43,16 @@ def _doubt(d, ax, ay, bx, by, dx, dy):
 
 
 @kernel
+def is_alone(near, doubt, turn, length):
+    """Whether a straight path is sure to have no second route, by what `trace` tells of what stands beside it.
+
+    A vertex of angle defect d at a lateral distance y gives at most d length / (8 y) of what `second_route` adds up:
+    where they all would not do that stood as near as the nearest, nothing need be followed once more.
+    """
+    return doubt * length <= 4.0 * near and turn < MOST_TURN
+
+
+@kernel
 def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
     """Whether a straight path may have a shorter second route: round convex vertices, or over the back of a tube.
 
@@ -68,13 +80,8 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
     for k in range(3):
         d = detour[face, k]
         if d != 0.0:
-            cx = 0.0
-            cy = 0.0
-            if k == 1:
-                cx = plane[face, 21]
-            elif k == 2:
-                cx = plane[face, 22]
-                cy = plane[face, 23]
+            cx = plane[face, 8 * k + 2]
+            cy = plane[face, 8 * k + 3]
             doubt = _doubt(d, x - cx, y - cy, tx - cx, ty - cy, dx, dy)
             if doubt > 0.0:
                 left += doubt
@@ -88,21 +95,16 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
         # over the edge that the end lies beyond; of two the one that the line itself crosses
         exit_edge = -1
         for k in range(3):
-            if k == entered or plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty >= plane[face, 3 * k + 2]:
+            at = 8 * k
+            height = plane[face, at] * (tx - plane[face, at + 2]) + plane[face, at + 1] * (ty - plane[face, at + 3])
+            if k == entered or height >= 0.0:
                 continue
             exit_edge = k
-            ux = 0.0
-            uy = 0.0
-            vx = plane[face, 21]
-            vy = 0.0
-            if k == 1:
-                ux = plane[face, 21]
-                vx = plane[face, 22]
-                vy = plane[face, 23]
-            elif k == 2:
-                ux = plane[face, 22]
-                uy = plane[face, 23]
-                vx = 0.0
+            ux = plane[face, at + 2]
+            uy = plane[face, at + 3]
+            at = at + 8 if k < 2 else 0
+            vx = plane[face, at + 2]
+            vy = plane[face, at + 3]
             # its tail to the right of the line, its head to the left
             if dx * (uy - y) - dy * (ux - x) <= 0.0 and dx * (vy - y) - dy * (vx - x) >= 0.0:
                 break
@@ -111,7 +113,7 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
         code = neighbour[face, exit_edge]
         if code < 0:
             return left > 1.0 or right > 1.0
-        at = 9 + 4 * exit_edge
+        at = 8 * exit_edge + 4
         c = plane[face, at]
         s = plane[face, at + 1]
         x, y = c * x - s * y + plane[face, at + 2], s * x + c * y + plane[face, at + 3]
@@ -120,15 +122,11 @@ def second_route(plane, neighbour, detour, normal, face, x, y, dx, dy, length):
         face = code // 3
         entered = code - 3 * face
         # the one corner that is new
-        d = detour[face, (entered + 2) % 3]
+        k = (entered + 2) % 3
+        d = detour[face, k]
         if d != 0.0:
-            cx = 0.0
-            cy = 0.0
-            if entered == 0:
-                cx = plane[face, 22]
-                cy = plane[face, 23]
-            elif entered == 2:
-                cx = plane[face, 21]
+            cx = plane[face, 8 * k + 2]
+            cy = plane[face, 8 * k + 3]
             doubt = _doubt(d, x - cx, y - cy, tx - cx, ty - cy, dx, dy)
             if doubt > 0.0:
                 left += doubt

@@ -82,11 +82,11 @@ def join(mesh, net, start, family, i, j, step, dx, dy, length):
             for k in range(3):
                 other = mesh.neighbour[goal, k]
                 if other >= 0 and other // 3 == f:
-                    c = mesh.plane[goal, 9 + 4 * k]
-                    s = mesh.plane[goal, 10 + 4 * k]
+                    c = mesh.crossing[goal, 4 * k]
+                    s = mesh.crossing[goal, 4 * k + 1]
                     hx, hy = (
-                        c * gx - s * gy + mesh.plane[goal, 11 + 4 * k],
-                        s * gx + c * gy + mesh.plane[goal, 12 + 4 * k],
+                        c * gx - s * gy + mesh.crossing[goal, 4 * k + 2],
+                        s * gx + c * gy + mesh.crossing[goal, 4 * k + 3],
                     )
                     found = True
                     break
@@ -202,7 +202,7 @@ def complete(
                 ex /= size
                 ey /= size
                 code, f, x, y, ux, uy, vx, vy, px, py, qx, qy, iterations = place(
-                    mesh.plane, mesh.neighbour, mesh.frame, mesh.vertex, detours.corner, detours.normal,
+                    mesh.plane, mesh.neighbour, mesh.frame, mesh.vertex, detours.beside, detours.corner, detours.normal,
                     net.face[ia, j], net.xy[ia, j, 0], net.xy[ia, j, 1], c * gx - s * gy, s * gx + c * gy, warp,
                     net.face[i, jb], net.xy[i, jb, 0], net.xy[i, jb, 1], c * ex + s * ey, c * ey - s * ex, weft,
                     side, tolerance,

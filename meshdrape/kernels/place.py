@@ -3,8 +3,8 @@
 import math
 
 from meshdrape.kernels.cache import kernel
-from meshdrape.kernels.certify import second_route
-from meshdrape.kernels.walk import WALKED, turn_into, walk
+from meshdrape.kernels.certify import is_alone, second_route
+from meshdrape.kernels.walk import WALKED, holds, trace, turn_into
 
 PLACED = 0
 OUTSIDE = 2
@@ -24,15 +24,16 @@ FOLD_SINE = math.sin(math.radians(1.0))
 
 @kernel
 def place(
-    plane, neighbour, frame, vertex, detour, normal, fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance
-):
+    plane, neighbour, frame, vertex, beside, detour, normal,
+    fa, xa, ya, ux, uy, wa, fb, xb, yb, vx, vy, wb, side, tolerance,
+):  # fmt: skip
     """Point at geodesic distance wa from A and wb from B, near the ends of the two given paths.
 
     Both paths are walked and brought into one plane, where the ends of all paths that cross the same triangles lie
-    on two circles about the unfolded starts. The circles' intersection turns both start directions, and the paths
-    are walked again: where no vertex is passed that closes the gap at once. Of the two intersections the one on
-    which A's path meets B's counter-clockwise is taken if `side` is 1, clockwise if -1: the sense of the quadrant,
-    so that round-off never chooses.
+    on two circles about the unfolded starts. The circles' intersection turns both start directions: where the paths
+    sweep over no vertex on the way there, and end in one triangle before and after, that closes the gap, and they
+    need not be walked again. Of the two intersections the one on which A's path meets B's counter-clockwise is taken
+    if `side` is 1, clockwise if -1: the sense of the quadrant, so that round-off never chooses.
 
     Returns
     -------
@@ -40,54 +41,46 @@ def place(
         Node; directions at A and at B; directions in which the two paths arrive, in the frame of the node's face.
     """
     iterations = 0
-    code, f1, ax, ay, px, py = walk(plane, neighbour, fa, xa, ya, ux, uy, wa)
+    code, f1, ax, ay, px, py, near_a, doubt_a, turn_a = trace(plane, neighbour, beside, fa, xa, ya, ux, uy, wa)
     if code != WALKED:
         return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, px, py, iterations
     while True:
-        code, f2, bx, by, qx, qy = walk(plane, neighbour, fb, xb, yb, vx, vy, wb)
+        code, f2, bx, by, qx, qy, near_b, doubt_b, turn_b = trace(plane, neighbour, beside, fb, xb, yb, vx, vy, wb)
         if code != WALKED:
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
         x1 = ax + wa * px
         y1 = ay + wa * py
-        if f1 != f2:
-            shared = False
+        shared = f1 == f2
+        if not shared:
             for k in range(3):
                 other = neighbour[f2, k]
                 if other >= 0 and other // 3 == f1:
-                    c = plane[f2, 9 + 4 * k]
-                    s = plane[f2, 10 + 4 * k]
-                    bx, by = c * bx - s * by + plane[f2, 11 + 4 * k], s * bx + c * by + plane[f2, 12 + 4 * k]
+                    at = 8 * k + 4
+                    c = plane[f2, at]
+                    s = plane[f2, at + 1]
+                    bx, by = c * bx - s * by + plane[f2, at + 2], s * bx + c * by + plane[f2, at + 3]
                     qx, qy = c * qx - s * qy, s * qx + c * qy
                     shared = True
                     break
-        else:
-            shared = True
         if shared:
             x2 = bx + wb * qx
             y2 = by + wb * qy
             gap2 = (x2 - x1) ** 2 + (y2 - y1) ** 2
         else:
-            gap2, turn_a, turn_b = _gap_in_space(
+            gap2, small_a, small_b = _gap_in_space(
                 frame, f1, x1, y1, px, py, wa, f2, bx + wb * qx, by + wb * qy, qx, qy, wb
             )
         if gap2 <= tolerance * tolerance:
-            if not shared and not _touch(vertex, f1, f2):
-                # two sheets of the surface that lie one on the other: no node
-                return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
             if not shared:
+                if not _touch(vertex, f1, f2):
+                    # two sheets of the surface that lie one on the other: no node
+                    return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
                 qx, qy = turn_into(plane, neighbour, frame, f2, qx, qy, f1)
-            if (px * qy - py * qx) * side < FOLD_SINE:
-                return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
-            code = PLACED
-            if len(detour) > 0 and (
-                second_route(plane, neighbour, detour, normal, fa, xa, ya, ux, uy, wa)
-                or second_route(plane, neighbour, detour, normal, fb, xb, yb, vx, vy, wb)
-            ):
-                code = DOUBTED
-            return code, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+            break
         if iterations == MAX_ITERATIONS:
             return NOT_CONVERGED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
         iterations += 1
+        met = False
         if shared:
             # circles about A's and B's images
             ex = bx - ax
@@ -101,23 +94,27 @@ def place(
             cx = ax + along * ex - height * ey
             cy = ay + along * ey + height * ex
             # turn = new direction / old one, as complex numbers
-            nx = (cx - ax) / wa
-            ny = (cy - ay) / wa
-            ca = nx * px + ny * py
-            sa = ny * px - nx * py
-            nx = (cx - bx) / wb
-            ny = (cy - by) / wb
-            cb = nx * qx + ny * qy
-            sb = ny * qx - nx * qy
+            gx = (cx - ax) / wa
+            gy = (cy - ay) / wa
+            ca = gx * px + gy * py
+            sa = gy * px - gx * py
+            hx = (cx - bx) / wb
+            hy = (cy - by) / wb
+            cb = hx * qx + hy * qy
+            sb = hy * qx - hx * qy
+            if f1 == f2 and ca > 0.0 and cb > 0.0:
+                near_a -= wa * abs(sa)
+                near_b -= wb * abs(sb)
+                met = near_a > 0.0 and near_b > 0.0 and holds(plane, f1, cx, cy)
         else:
             ca = 1.0
-            sa = turn_a
+            sa = small_a
             cb = 1.0
-            sb = turn_b
-        if iterations > DAMPED_FROM:
+            sb = small_b
+        if not met and iterations > DAMPED_FROM:
             ca += 1.0
             cb += 1.0
-        if iterations > ALTERNATE_FROM:
+        if not met and iterations > ALTERNATE_FROM:
             if iterations % 2 == 0:
                 ca = 1.0
                 sa = 0.0
@@ -132,9 +129,31 @@ def place(
         sb /= size
         ux, uy = ca * ux - sa * uy, sa * ux + ca * uy
         vx, vy = cb * vx - sb * vy, sb * vx + cb * vy
-        code, f1, ax, ay, px, py = walk(plane, neighbour, fa, xa, ya, ux, uy, wa)
+        if met:
+            x1 = cx
+            y1 = cy
+            px = gx
+            py = gy
+            qx = hx
+            qy = hy
+            break
+        code, f1, ax, ay, px, py, near_a, doubt_a, turn_a = trace(plane, neighbour, beside, fa, xa, ya, ux, uy, wa)
         if code != WALKED:
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
+    if (px * qy - py * qx) * side < FOLD_SINE:
+        return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+    if len(detour) > 0 and (
+        (
+            not is_alone(near_a, doubt_a, turn_a, wa)
+            and second_route(plane, neighbour, detour, normal, fa, xa, ya, ux, uy, wa)
+        )
+        or (
+            not is_alone(near_b, doubt_b, turn_b, wb)
+            and second_route(plane, neighbour, detour, normal, fb, xb, yb, vx, vy, wb)
+        )
+    ):
+        return DOUBTED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
+    return PLACED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
 
 
 @kernel

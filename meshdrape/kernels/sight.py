@@ -118,10 +118,10 @@ def sight(mesh, face, x, y, goal, goal_x, goal_y, reach):
             for k in range(3):
                 other = mesh.neighbour[goal, k]
                 if not beside and other >= 0 and other // 3 == f:
-                    c = mesh.plane[goal, 9 + 4 * k]
-                    s = mesh.plane[goal, 10 + 4 * k]
-                    hu = c * goal_x - s * goal_y + mesh.plane[goal, 11 + 4 * k] - ox - length * ex
-                    hv = s * goal_x + c * goal_y + mesh.plane[goal, 12 + 4 * k] - oy - length * ey
+                    c = mesh.crossing[goal, 4 * k]
+                    s = mesh.crossing[goal, 4 * k + 1]
+                    hu = c * goal_x - s * goal_y + mesh.crossing[goal, 4 * k + 2] - ox - length * ex
+                    hv = s * goal_x + c * goal_y + mesh.crossing[goal, 4 * k + 3] - oy - length * ey
                     hw = 0.0
                     beside = True
             aside = math.sqrt(hu * hu + hv * hv)

@@ -18,7 +18,7 @@ from meshdrape.kernels.place import (
     place,
 )
 from meshdrape.kernels.shear import past_stop
-from meshdrape.kernels.walk import WALKED, off_mould, walk
+from meshdrape.kernels.walk import WALKED, holds, off_mould, walk
 
 STOPPED = 5
 NOT_REACHED = 8
@@ -76,6 +76,7 @@ def sweep(
     frame = mesh.frame
     vertex = mesh.vertex
     rim = mesh.rim
+    beside = detours.beside
     detour = detours.corner
     wary = detours.wary
     normal = detours.normal
@@ -89,6 +90,8 @@ def sweep(
     i0 = start.origin[0]
     j0 = start.origin[1]
     tolerance2 = tolerance * tolerance
+    per_warp = 1.0 / warp
+    per_weft = 1.0 / weft
     side = float(si * sj)
     stopping = stop_at < math.pi
     angle = initial_angle if side > 0.0 else math.pi - initial_angle
@@ -141,10 +144,10 @@ def sweep(
             at_seed = ia == i0 and jb == j0
             if fa == fb and fa == fd and not wary[fa] and not at_seed and not every:
                 # the planar fourth corner of the rhombus, if this triangle holds it
-                ux = (xb - xy[ia, jb, 0]) / warp
-                uy = (yb - xy[ia, jb, 1]) / warp
-                vx = (xa - xy[ia, jb, 0]) / weft
-                vy = (ya - xy[ia, jb, 1]) / weft
+                ux = (xb - xy[ia, jb, 0]) * per_warp
+                uy = (yb - xy[ia, jb, 1]) * per_warp
+                vx = (xa - xy[ia, jb, 0]) * per_weft
+                vy = (ya - xy[ia, jb, 1]) * per_weft
                 # edges keep their exact length: renew the unit vectors by one Newton step of 1/sqrt
                 scale = 1.5 - 0.5 * (ux * ux + uy * uy)
                 ux *= scale
@@ -158,9 +161,7 @@ def sweep(
                 gy = yb + weft * vy - y
                 if (
                     gx * gx + gy * gy <= tolerance2
-                    and plane[fa, 0] * x + plane[fa, 1] * y >= plane[fa, 2]
-                    and plane[fa, 3] * x + plane[fa, 4] * y >= plane[fa, 5]
-                    and plane[fa, 6] * x + plane[fa, 7] * y >= plane[fa, 8]
+                    and holds(plane, fa, x, y)
                     and (ux * vy - uy * vx) * side > FOLD_SINE
                     and not (stopping and not least <= ux * vx + uy * vy <= most)
                 ):
@@ -222,6 +223,7 @@ def sweep(
                 neighbour,
                 frame,
                 vertex,
+                beside,
                 detour,
                 normal,
                 fa,

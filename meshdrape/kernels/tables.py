@@ -21,7 +21,8 @@ class Unfolding(NamedTuple):
     """
 
     plane: FloatArray
-    """(m, 24) `line`, `crossing` and `corner` of each face side by side: what a walk reads, in three cache lines."""
+    """(m, 24) what a walk reads, a cache line an edge: for edge k, from 8 k on, the unit inward normal (2), the tail (2),
+    and `crossing` (4)."""
     line: FloatArray
     """(m, 9) three edges as (nx, ny, o): unit inward normal and offset; nx x + ny y - o is the height above it."""
     crossing: FloatArray
@@ -49,6 +50,9 @@ class Detours(NamedTuple):
     (0, 3) where no path on the surface has a shorter way."""
     wary: NDArray[np.bool_]
     """(m,) whether even a path within the face may have a shorter way."""
+    beside: NDArray[np.float32]
+    """(m, 6) what a path passes that comes in over edge k: at 2 k the `corner` across from it, infinite where that is a
+    radius or negative; at 2 k + 1 the angle, rad, by which the surface turns at that edge."""
     normal: FloatArray
     """(m, 3) unit normals; (0, 3) likewise."""
 

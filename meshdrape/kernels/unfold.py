@@ -90,9 +90,9 @@ def join(corner, neighbour, line, crossing, plane):
             crossing[f, at + 1] = s
             crossing[f, at + 2] = 0.5 * (rx + tx) - (c * mx - s * my)
             crossing[f, at + 3] = 0.5 * (ry + ty) - (s * mx + c * my)
-        for n in range(9):
-            plane[f, n] = line[f, n]
-        for n in range(12):
-            plane[f, 9 + n] = crossing[f, n]
-        for n in range(3):
-            plane[f, 21 + n] = corner[f, n]
+            plane[f, 8 * k] = -ey
+            plane[f, 8 * k + 1] = ex
+            plane[f, 8 * k + 2] = px
+            plane[f, 8 * k + 3] = py
+            for n in range(4):
+                plane[f, 8 * k + 4 + n] = crossing[f, at + n]

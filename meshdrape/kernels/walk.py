@@ -15,10 +15,6 @@ MAX_CROSSINGS = 100_000
 def walk(plane, neighbour, face, x, y, dx, dy, length):
     """Walk straight on for `length` from (x, y) in `face`, in the unit direction (dx, dy).
 
-    Instead of stepping from edge to edge the start itself is carried into each new frame, so round-off grows
-    only by one rigid motion a crossing and the start's image is at hand for the circles of `place`. Which edge is
-    next is a question of sides, answered without a division.
-
     Parameters
     ----------
     plane, neighbour
@@ -30,66 +26,101 @@ def walk(plane, neighbour, face, x, y, dx, dy, length):
         Face where the path ends; image of the start and the direction in its frame: the end is
         (x + length dx, y + length dy).
     """
-    # first face: which edges the end lies beyond
-    tx = x + length * dx
-    ty = y + length * dy
-    exit_edge = -1
-    worst = 0.0
-    second = -1
-    for k in range(3):
-        height = plane[face, 3 * k] * tx + plane[face, 3 * k + 1] * ty - plane[face, 3 * k + 2]
-        if height < 0.0:
-            if exit_edge >= 0:
-                second = exit_edge if height < worst else k
-            if height < worst:
-                worst = height
-                exit_edge = k
-    if exit_edge < 0:
-        return WALKED, face, x, y, dx, dy
-    if second >= 0:
-        # beyond two: the corner between them decides, by the side on which the line passes it
-        v = second if (exit_edge + 1) % 3 == second else exit_edge
-        cx = 0.0
-        cy = 0.0
-        if v == 1:
-            cx = plane[face, 21]
-        elif v == 2:
-            cx = plane[face, 22]
-            cy = plane[face, 23]
-        exit_edge = (v + 2) % 3 if dx * (cy - y) - dy * (cx - x) > 0.0 else v
+    code, face, x, y, dx, dy, _, _, _ = trace(plane, neighbour, None, face, x, y, dx, dy, length)
+    return code, face, x, y, dx, dy
+
+
+@kernel
+def trace(plane, neighbour, beside, face, x, y, dx, dy, length):
+    """Walk as `walk` does, and tell what there is beside the path.
+
+    Instead of stepping from edge to edge the start itself is carried into each new frame, so round-off grows
+    only by one rigid motion a crossing and the start's image is at hand for the circles of `place`. Which edge is
+    next is a question of sides, answered without a division.
+
+    Parameters
+    ----------
+    beside : (m, 6) or None
+        Of `Detours`; None where nobody asks.
+
+    Returns
+    -------
+    (code, face, x, y, dx, dy, near, doubt, turn)
+        `near` is how far the line runs past the nearest corner of the faces it crosses, mm; `doubt` and `turn` are
+        the sums of `beside` over those corners and over the edges crossed.
+    """
+    # how far each corner lies to the left of the line
+    s0 = dx * (plane[face, 3] - y) - dy * (plane[face, 2] - x)
+    s1 = dx * (plane[face, 11] - y) - dy * (plane[face, 10] - x)
+    s2 = dx * (plane[face, 19] - y) - dy * (plane[face, 18] - x)
+    near = min(abs(s0), min(abs(s1), abs(s2)))
+    doubt = 0.0
+    turn = 0.0
+    if beside is not None:
+        doubt = beside[face, 0] + beside[face, 2] + beside[face, 4]
+    # out over the edge whose tail lies to the right and whose head to the left
+    if s0 <= 0.0 and s1 > 0.0:
+        exit_edge = 0
+    elif s1 <= 0.0 and s2 > 0.0:
+        exit_edge = 1
+    elif s2 <= 0.0 and s0 > 0.0:
+        exit_edge = 2
+    else:
+        # the line misses the face by round-off, or begins at a corner and leaves it
+        exit_edge = max(_beyond(plane, face, -1, x + length * dx, y + length * dy), 0)
+    entered = -1
     for _ in range(MAX_CROSSINGS):
+        at = 8 * exit_edge
+        tx = x + length * dx
+        ty = y + length * dy
+        if plane[face, at] * (tx - plane[face, at + 2]) + plane[face, at + 1] * (ty - plane[face, at + 3]) >= 0.0:
+            # along an edge it is round-off that chose the side; what counts is whether the end lies in the face
+            exit_edge = _beyond(plane, face, entered, tx, ty)
+            if exit_edge < 0:
+                return WALKED, face, x, y, dx, dy, near, doubt, turn
+            at = 8 * exit_edge
         code = neighbour[face, exit_edge]
         if code < 0:
-            return LEFT_SURFACE, face, x, y, dx, dy
-        at = 9 + 4 * exit_edge
-        c = plane[face, at]
-        s = plane[face, at + 1]
-        x, y = c * x - s * y + plane[face, at + 2], s * x + c * y + plane[face, at + 3]
+            return LEFT_SURFACE, face, x, y, dx, dy, near, doubt, turn
+        c = plane[face, at + 4]
+        s = plane[face, at + 5]
+        x, y = c * x - s * y + plane[face, at + 6], s * x + c * y + plane[face, at + 7]
         dx, dy = c * dx - s * dy, s * dx + c * dy
         face = code // 3
         entered = code - 3 * face
+        if beside is not None:
+            doubt += beside[face, 2 * entered]
+            turn += beside[face, 2 * entered + 1]
         # in over one edge, out over the next where the far corner lies to the left, over the one before where not
-        cx = 0.0
-        cy = 0.0
-        if entered == 0:
-            cx = plane[face, 22]
-            cy = plane[face, 23]
-        elif entered == 2:
-            cx = plane[face, 21]
-        exit_edge = entered + 1 if dx * (cy - y) - dy * (cx - x) > 0.0 else entered + 2
-        if exit_edge > 2:
-            exit_edge -= 3
-        at = 3 * exit_edge
-        tx = x + length * dx
-        ty = y + length * dy
-        if plane[face, at] * tx + plane[face, at + 1] * ty - plane[face, at + 2] >= 0.0:
-            # along an edge it is round-off that chose the side; what counts is whether the end lies in the face
-            other = 3 - entered - exit_edge
-            at = 3 * other
-            if plane[face, at] * tx + plane[face, at + 1] * ty - plane[face, at + 2] >= 0.0:
-                return WALKED, face, x, y, dx, dy
-            exit_edge = other
-    return LEFT_SURFACE, face, x, y, dx, dy
+        before = entered - 1 if entered > 0 else 2
+        left = dx * (plane[face, 8 * before + 3] - y) - dy * (plane[face, 8 * before + 2] - x)
+        near = min(near, abs(left))
+        exit_edge = 3 - entered - before if left > 0.0 else before
+    return LEFT_SURFACE, face, x, y, dx, dy, near, doubt, turn
+
+
+@kernel
+def _beyond(plane, face, entered, x, y):
+    """The edge, other than the one entered over, beyond which a place lies farthest; -1 where it lies in the face."""
+    edge = -1
+    worst = 0.0
+    for k in range(3):
+        height = plane[face, 8 * k] * (x - plane[face, 8 * k + 2]) + plane[face, 8 * k + 1] * (y - plane[face, 8 * k + 3])
+        if k != entered and height < worst:
+            worst = height
+            edge = k
+    return edge
+
+
+@kernel
+def holds(plane, face, x, y):
+    """Whether a place (x, y) of a face's frame lies in the face."""
+    # corner 0 is the origin, corner 1 on the x axis
+    return (
+        y >= 0.0
+        and plane[face, 8] * (x - plane[face, 10]) + plane[face, 9] * y >= 0.0
+        and plane[face, 16] * x + plane[face, 17] * y >= 0.0
+    )
 
 
 @kernel
@@ -104,8 +135,8 @@ def turn_into(plane, neighbour, frame, source, dx, dy, target):
     for k in range(3):
         code = neighbour[source, k]
         if code >= 0 and code // 3 == target:
-            c = plane[source, 9 + 4 * k]
-            s = plane[source, 10 + 4 * k]
+            c = plane[source, 8 * k + 4]
+            s = plane[source, 8 * k + 5]
             return c * dx - s * dy, s * dx + c * dy
     a = frame[source]
     b = frame[target]

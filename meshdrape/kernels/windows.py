@@ -107,7 +107,7 @@ def spread(on, out, face, x, y, reach, slack):
         dx = cx - x
         dy = cy - y
         away = math.hypot(dx, dy)
-        if away <= SNAP * on.plane[face, 21]:
+        if away <= SNAP * on.plane[face, 10]:
             at_vertex = k
         if away > 0.0:
             dx /= away
@@ -133,11 +133,7 @@ def spread(on, out, face, x, y, reach, slack):
 @kernel
 def corner_of(plane, f, k):
     """Corner k of a face in its frame."""
-    if k == 0:
-        return 0.0, 0.0
-    if k == 1:
-        return plane[f, 21], 0.0
-    return plane[f, 22], plane[f, 23]
+    return plane[f, 8 * k + 2], plane[f, 8 * k + 3]
 
 
 @kernel
@@ -308,10 +304,10 @@ def _over(on, out, f, e, sx, sy, low, high, passed, bend, base, c, s, turned, re
         out.counts[N_ROOM] = 0
         return
     out.counts[N_WINDOWS] = n + 1
-    mc = on.plane[f, 9 + 4 * e]
-    ms = on.plane[f, 10 + 4 * e]
-    out.real[n, X] = mc * sx - ms * sy + on.plane[f, 11 + 4 * e]
-    out.real[n, Y] = ms * sx + mc * sy + on.plane[f, 12 + 4 * e]
+    mc = on.plane[f, 8 * e + 4]
+    ms = on.plane[f, 8 * e + 5]
+    out.real[n, X] = mc * sx - ms * sy + on.plane[f, 8 * e + 6]
+    out.real[n, Y] = ms * sx + mc * sy + on.plane[f, 8 * e + 7]
     out.real[n, LOW] = 1.0 - high
     out.real[n, HIGH] = 1.0 - low
     out.real[n, PASSED] = passed
