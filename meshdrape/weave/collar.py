@@ -38,15 +38,15 @@ MOST_ROUNDS = 80
 ALIKE = 1e-12
 
 
-def extended(surface: Surface, depth: float) -> Surface:
+def extended(surface: Surface, depth: float, slit: float = 0.0) -> Surface:
     """The surface with a collar `depth` mm wide along its outer borders and its holes filled.
 
     Faces and vertices of `surface` keep their numbers; those of the collar follow. A closed surface is returned as
-    it is. Notches narrower than `depth` are filled first; along a hollow border the collar is narrowed where it would
+    it is. Notches narrower than `depth` and slits narrower than `slit` are filled first; along a hollow border the collar is narrowed where it would
     fold over itself.
     """
     n_mould_faces = len(surface.faces)
-    notches = without_notches(surface, depth)
+    notches = without_notches(surface, depth, slit)
     if len(notches):
         surface = Surface.from_arrays(surface.vertices, np.concatenate([surface.faces, notches]), n_mould_faces)
     vertices = [surface.vertices]

@@ -1,6 +1,7 @@
-"""Notches of a ragged border, filled before the mould is extended: strips of extension would fight over them.
+"""Notches and slits of the border, filled before the mould is extended: strips of extension would fight over them.
 
-Scans, decimated and torn meshes end in teeth. Cloth bridges what is between them, as it bridges a hole.
+Scans, decimated and torn meshes end in teeth; plates are cut open or slotted. Cloth bridges what is between, as it
+bridges a hole.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.surface import Surface
+from meshdrape.weave.slits import facing_edges
 
 FloatArray = NDArray[np.float64]
 
@@ -18,24 +20,39 @@ FloatArray = NDArray[np.float64]
 HOLLOW = 2.0
 # A filling leans from the faces beside it by less than this.
 LEAN_COSINE = 0.5
-# Height of the lowest triangle worth adding, of its longest side.
-FLATTEST = 1e-3
+# Height of the lowest triangle worth adding, of its longest side; a slit may be far longer than wide.
+FLATTEST, SLIVER = 1e-3, 1e-6
 # Round-off of lengths that are worked out in two ways.
 NEARLY = 1e-9
 
 
-def without_notches(surface: Surface, width: float) -> NDArray[np.int64]:
-    """Triangles (n, 3), of the surface's vertices, that fill the notches of its outer borders no wider than `width` mm.
+def without_notches(surface: Surface, width: float, slit: float = 0.0) -> NDArray[np.int64]:
+    """Triangles (n, 3), of the surface's vertices, that fill the notches and slits of its outer borders.
 
-    The narrowest first, each between two neighbouring border edges; what is filled may leave a wider notch to fill.
+    The narrowest notch first, each between two neighbouring border edges; what is filled may leave a wider one to
+    fill. Then slits, each between two border edges that face each other, and from there on to both its ends.
+
+    Parameters
+    ----------
+    width : float
+        Of the widest notch, mm.
+    slit : float
+        Of the widest slit, mm, not above `width`; 0 for none.
     """
-    filled: list[tuple[int, int, int]] = []
-    for loop in surface.border_loops:
-        if not surface.is_hole(loop):
-            narrow = _narrow(surface, loop, width)
-            if len(narrow):
-                filled += _Border(surface, loop).fill(width, narrow.tolist())
-    return np.array(filled, dtype=np.int64).reshape(-1, 3)
+    loops = [loop for loop in surface.border_loops if not surface.is_hole(loop)]
+    narrow = [_narrow(surface, loop, width) for loop in loops]
+    if not len(loops):
+        return np.empty((0, 3), dtype=np.int64)
+    facing = facing_edges(surface, loops, slit, width) if slit > 0 else []
+    if not len(facing) and not any(map(len, narrow)):
+        return np.empty((0, 3), dtype=np.int64)
+    first = np.cumsum([0, *map(len, loops[:-1])])
+    border = _Border(surface, loops)
+    border.fill(width, np.concatenate([a + b for a, b in zip(first, narrow, strict=True)]).tolist())
+    for k, p in facing:
+        if border.bridge(k, p):
+            border.fill(width, border.ends_of_front(), slit)
+    return np.array(border.filled, dtype=np.int64).reshape(-1, 3)
 
 
 def _narrow(surface: Surface, loop: NDArray[np.int64], width: float) -> NDArray[np.int64]:
@@ -48,96 +65,185 @@ def _narrow(surface: Surface, loop: NDArray[np.int64], width: float) -> NDArray[
 
 
 class _Border:
-    """One border loop, whose vertices drop out as notches at them are filled."""
+    """Border loops, whose vertices drop out as notches at them are filled.
 
-    def __init__(self, surface: Surface, loop: NDArray[np.int64]) -> None:
+    Attributes
+    ----------
+    filled : list of triangles
+        What was filled so far.
+    """
+
+    def __init__(self, surface: Surface, loops: list[NDArray[np.int64]]) -> None:
+        from scipy.spatial import cKDTree
+
         self.vertices = surface.vertices
+        loop = np.concatenate(loops)
         tail = surface.faces[loop // 3, loop % 3]
-        n = len(tail)
         self.vertex = tail.tolist()
-        self.before = [(k - 1) % n for k in range(n)]
-        self.after = [(k + 1) % n for k in range(n)]
+        self.before: list[int] = []
+        self.after: list[int] = []
+        for n in map(len, loops):
+            first = len(self.after)
+            self.before += [first + (k - 1) % n for k in range(n)]
+            self.after += [first + (k + 1) % n for k in range(n)]
         self.angle = surface.vertex_angle[tail].tolist()
         # of the face inside the edge that starts at each vertex
         self.normal = [surface.face_normal[face] for face in (loop // 3).tolist()]
-        self.left = n
+        # whether that edge ends a stretch of slit that is filled
+        self.front = [False] * len(tail)
         # a filling must not join what the mould joins already, be it elsewhere
         here = np.zeros(len(surface.vertices), dtype=bool)
         here[tail] = True
         ends = np.sort(np.stack([surface.faces, surface.faces[:, [1, 2, 0]]], axis=-1).reshape(-1, 2), axis=1)
         self.edges = set(map(tuple, ends[here[ends].all(axis=1)].tolist()))
+        self.near = cKDTree(self.vertices[self.vertex])
+        self.filled: list[tuple[int, int, int]] = []
 
-    def fill(self, width: float, narrow: list[int]) -> list[tuple[int, int, int]]:
-        """Fill notches up to a width, beginning at places that may have one; the triangles."""
-        from scipy.spatial import cKDTree
-
-        points = self.vertices[self.vertex]
-        self.near = cKDTree(points)
+    def fill(self, width: float, narrow: list[int], slit: float = 0.0) -> None:
+        """Fill notches up to a width, and a slit on from where it is filled, beginning at places that may be one."""
         waiting: list[tuple[float, int, int, int]] = []
         for k in narrow:
-            self._offer(waiting, k, width)
-        filled = []
-        while waiting and self.left > 3:
+            self._offer(waiting, k, width, slit)
+        while waiting:
             _, k, u, w = heapq.heappop(waiting)
             if (self.before[k], self.after[k]) != (u, w) or self.vertex[k] < 0:
                 continue
-            normal = self._filling(k)
+            closing = self.after[w] == u
+            normal = self._filling((k, u, w), [] if closing else [(u, w)], FLATTEST, (self.normal[u], self.normal[k]))
             if normal is None:
                 continue
-            filled.append((self.vertex[k], self.vertex[u], self.vertex[w]))
-            a, b = self._corners(u, k, w)
-            self.angle[u] += a
-            self.angle[w] += b
-            self.edges.add((min(self.vertex[u], self.vertex[w]), max(self.vertex[u], self.vertex[w])))
-            self.after[u], self.before[w] = w, u
-            self.normal[u] = normal
+            self.filled.append((self.vertex[k], self.vertex[u], self.vertex[w]))
             self.vertex[k] = -1
-            self.left -= 1
+            if closing:
+                self.vertex[u] = self.vertex[w] = -1
+                continue
+            self._turn(u, k, w)
+            self._turn(w, u, k)
+            self.front[u] = self.front[u] or self.front[k]
+            self._join(u, w, normal)
             for end in (u, w):
-                self._offer(waiting, end, width)
-        return filled
+                self._offer(waiting, end, width, slit)
 
-    def _offer(self, waiting: list[tuple[float, int, int, int]], k: int, width: float) -> None:
+    def bridge(self, k: int, p: int) -> bool:
+        """Fill between two border edges that face each other, from k and from p on; whether there is room for that."""
+        m, v = self.after[k], self.after[p]
+        if min(self.vertex[k], self.vertex[p]) < 0 or len({k, m, p, v}) < 4 or self.front[k] or self.front[p]:
+            return False
+        # m lies across from p, and k from v; cut along the shorter diagonal
+        if np.linalg.norm(self._at(v) - self._at(m)) <= np.linalg.norm(self._at(k) - self._at(p)):
+            halves, across = ((k, v, m), (p, m, v)), (m, v)
+        else:
+            halves, across = ((k, p, m), (p, k, v)), (k, p)
+        # a side of the filling that is a border edge already closes the slit
+        sides = [(tail, head) for tail, head in ((k, v), (p, m)) if self.after[head] != tail]
+        faces = self.normal[k], self.normal[p]
+        normals = [self._filling(half, [*sides, across], SLIVER, faces) for half in halves]
+        if normals[0] is None or normals[1] is None or any(self._crossed(*side) for side in sides):
+            return False
+        for half in halves:
+            self.filled.append((self.vertex[half[0]], self.vertex[half[1]], self.vertex[half[2]]))
+            for n in range(3):
+                self._turn(half[n], half[n - 1], half[n - 2])
+        self.edges.add(self._ends(*across))
+        for tail, head in ((k, v), (p, m)):
+            if self.after[head] == tail:
+                self.vertex[tail] = self.vertex[head] = -1
+            else:
+                self._join(tail, head, normals[0] if tail == k else normals[1])
+                self.front[tail] = True
+        return True
+
+    def ends_of_front(self) -> list[int]:
+        """Places at both ends of the edges that end a filled stretch of slit."""
+        fronts = [k for k, front in enumerate(self.front) if front and self.vertex[k] >= 0]
+        return fronts + [self.after[k] for k in fronts]
+
+    def _join(self, tail: int, head: int, normal: FloatArray) -> None:
+        """A new border edge, of a filling with that normal."""
+        self.after[tail], self.before[head] = head, tail
+        self.normal[tail] = normal
+        self.edges.add(self._ends(tail, head))
+
+    def _turn(self, at: int, a: int, b: int) -> None:
+        """Add the angle of a filling's corner to that of the faces at it."""
+        here = self._at(at)
+        self.angle[at] += _angle(self._at(a) - here, self._at(b) - here)
+
+    def _ends(self, a: int, b: int) -> tuple[int, int]:
+        return min(self.vertex[a], self.vertex[b]), max(self.vertex[a], self.vertex[b])
+
+    def _offer(self, waiting: list[tuple[float, int, int, int]], k: int, width: float, slit: float) -> None:
+        if self.vertex[k] < 0:
+            return
         u, w = self.before[k], self.after[k]
+        legs = [float(np.linalg.norm(self._at(end) - self._at(k))) for end in (u, w)]
         across = float(np.linalg.norm(self._at(w) - self._at(u)))
         # half the chord over the turn is the radius of the bend
         if (self.angle[k] - np.pi) * HOLLOW * width < 0.5 * across:
             return
         if across <= width:
             heapq.heappush(waiting, (across, k, u, w))
+        elif (self.front[u] or self.front[k]) and across <= max(legs):
+            # on along a slit, however long its edges
+            height = float(np.linalg.norm(np.cross(self._at(u) - self._at(k), self._at(w) - self._at(k)))) / max(legs)
+            if height <= slit:
+                heapq.heappush(waiting, (height, k, u, w))
 
     def _at(self, k: int) -> FloatArray:
         return np.asarray(self.vertices[self.vertex[k]])
 
-    def _corners(self, u: int, k: int, w: int) -> tuple[float, float]:
-        """Angles of the triangle at u and at w."""
-        p, q, r = self._at(u), self._at(k), self._at(w)
-        return _angle(q - p, r - p), _angle(p - r, q - r)
+    def _filling(
+        self,
+        corners: tuple[int, int, int],
+        new: list[tuple[int, int]],
+        flattest: float,
+        beside: tuple[FloatArray, FloatArray],
+    ) -> FloatArray | None:
+        """Normal of a triangle that fills, between faces of the given normals; None where there should be none.
 
-    def _filling(self, k: int) -> FloatArray | None:
-        """Normal of the triangle that fills the notch at k; None where there should be none."""
-        u, w = self.before[k], self.after[k]
-        ends = (min(self.vertex[u], self.vertex[w]), max(self.vertex[u], self.vertex[w]))
-        if ends in self.edges or self.vertex[u] == self.vertex[w]:
+        corners : three places on the border, the second before the first along it, or across from it.
+        new : the sides that are not there yet, of it and of what is filled with it.
+        flattest : height of the lowest triangle worth adding, of its longest side.
+        """
+        if any(self._ends(*side) in self.edges or self.vertex[side[0]] == self.vertex[side[1]] for side in new):
             return None
-        q, p, r = self._at(k), self._at(u), self._at(w)
+        q, p, r = (self._at(n) for n in corners)
         normal = np.cross(p - q, r - q)
         size = float(np.linalg.norm(normal))
         longest = max(float(np.linalg.norm(p - q)), float(np.linalg.norm(r - q)), float(np.linalg.norm(r - p)))
-        if size < FLATTEST * longest * longest:
+        if size < flattest * longest * longest:
             return None
         normal /= size
-        if min(float(normal @ self.normal[u]), float(normal @ self.normal[k])) < LEAN_COSINE:
+        if min(float(normal @ face) for face in beside) < LEAN_COSINE:
             return None
         # a tooth that reaches into the notch from elsewhere is no place for it
         sides = [np.cross(normal, e - s) for s, e in ((q, p), (p, r), (r, q))]
+        mine = {self.vertex[n] for n in (*corners, *(end for side in new for end in side))}
         for other in self.near.query_ball_point((p + q + r) / 3, longest):
-            if other in (u, k, w) or self.vertex[other] < 0:
+            if self.vertex[other] < 0 or self.vertex[other] in mine:
                 continue
             point = self._at(other)
             if all(float(side @ (point - s)) >= 0 for side, s in zip(sides, (q, p, r), strict=True)):
                 return None
         return np.asarray(normal)
+
+    def _crossed(self, a: int, b: int) -> bool:
+        """Whether a border edge runs across the way from a to b: seen along the normal there, and no farther off."""
+        start, way = self._at(a), self._at(b) - self._at(a)
+        size = float(np.linalg.norm(way))
+        live = [
+            k for k, vertex in enumerate(self.vertex) if vertex >= 0 and not {a, b} & {k, self.after[k]}
+        ]
+        tail = self.vertices[[self.vertex[k] for k in live]] - start
+        head = self.vertices[[self.vertex[self.after[k]] for k in live]] - start
+        normal = self.normal[a]
+        left = np.cross(normal, way)
+        ends = [points @ left for points in (tail, head)]
+        passes = ends[0] * ends[1] < 0
+        at = (ends[0] / np.where(passes, ends[0] - ends[1], 1.0))[:, None]
+        point = tail + at * (head - tail)
+        along = point @ way / (size * size)
+        return bool((passes & (along > 0) & (along < 1) & (np.abs(point @ normal) < size)).any())
 
 
 def _angle(a: FloatArray, b: FloatArray) -> float:
