@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.surface import Surface
+from meshdrape.weave.outlines import triangulate
 from meshdrape.weave.slits import facing_edges
 
 FloatArray = NDArray[np.float64]
@@ -22,6 +23,8 @@ HOLLOW = 2.0
 LEAN_COSINE = 0.5
 # Height of the lowest triangle worth adding, of its longest side; a slit may be far longer than wide.
 FLATTEST, SLIVER = 1e-3, 1e-6
+# Vertices at the closed end of a slit that is filled at one stroke, at most.
+LONGEST_END = 12
 # Round-off of lengths that are worked out in two ways.
 NEARLY = 1e-9
 
@@ -108,21 +111,9 @@ class _Border:
             _, k, u, w = heapq.heappop(waiting)
             if (self.before[k], self.after[k]) != (u, w) or self.vertex[k] < 0:
                 continue
-            closing = self.after[w] == u
-            normal = self._filling((k, u, w), [] if closing else [(u, w)], FLATTEST, (self.normal[u], self.normal[k]))
-            if normal is None:
-                continue
-            self.filled.append((self.vertex[k], self.vertex[u], self.vertex[w]))
-            self.vertex[k] = -1
-            if closing:
-                self.vertex[u] = self.vertex[w] = -1
-                continue
-            self._turn(u, k, w)
-            self._turn(w, u, k)
-            self.front[u] = self.front[u] or self.front[k]
-            self._join(u, w, normal)
-            for end in (u, w):
-                self._offer(waiting, end, width, slit)
+            if self._fit([(k, u, w)], FLATTEST, front=self.front[u] or self.front[k]):
+                for end in (u, w):
+                    self._offer(waiting, end, width, slit)
 
     def bridge(self, k: int, p: int) -> bool:
         """Fill between two border edges that face each other, from k and from p on; whether there is room for that."""
@@ -131,46 +122,59 @@ class _Border:
             return False
         # m lies across from p, and k from v; cut along the shorter diagonal
         if np.linalg.norm(self._at(v) - self._at(m)) <= np.linalg.norm(self._at(k) - self._at(p)):
-            halves, across = ((k, v, m), (p, m, v)), (m, v)
+            halves = [(k, v, m), (p, m, v)]
         else:
-            halves, across = ((k, p, m), (p, k, v)), (k, p)
-        # a side of the filling that is a border edge already closes the slit
-        sides = [(tail, head) for tail, head in ((k, v), (p, m)) if self.after[head] != tail]
-        faces = self.normal[k], self.normal[p]
-        normals = [self._filling(half, [*sides, across], SLIVER, faces) for half in halves]
-        if normals[0] is None or normals[1] is None or any(self._crossed(*side) for side in sides):
-            return False
-        for half in halves:
-            self.filled.append((self.vertex[half[0]], self.vertex[half[1]], self.vertex[half[2]]))
-            for n in range(3):
-                self._turn(half[n], half[n - 1], half[n - 2])
-        self.edges.add(self._ends(*across))
-        for tail, head in ((k, v), (p, m)):
-            if self.after[head] == tail:
-                self.vertex[tail] = self.vertex[head] = -1
-            else:
-                self._join(tail, head, normals[0] if tail == k else normals[1])
-                self.front[tail] = True
-        return True
+            halves = [(k, p, m), (p, k, v)]
+        if self._fit(halves, SLIVER, front=True):
+            return True
+        # there may be vertices between the two at the slit's end
+        for outline in ([k, *self._chain(m, p), v], [p, *self._chain(v, k), m]):
+            if len(outline) > 4:
+                # the filling runs the other way round than the border
+                outline.reverse()
+                ears = triangulate(self.vertices[[self.vertex[n] for n in outline]], self.normal[k])
+                triangles = [] if ears is None else np.array(outline)[ears].tolist()
+                if triangles and self._fit([(a, b, c) for a, b, c in triangles], SLIVER, front=True):
+                    return True
+        return False
 
     def ends_of_front(self) -> list[int]:
         """Places at both ends of the edges that end a filled stretch of slit."""
         fronts = [k for k, front in enumerate(self.front) if front and self.vertex[k] >= 0]
         return fronts + [self.after[k] for k in fronts]
 
-    def _join(self, tail: int, head: int, normal: FloatArray) -> None:
-        """A new border edge, of a filling with that normal."""
-        self.after[tail], self.before[head] = head, tail
-        self.normal[tail] = normal
-        self.edges.add(self._ends(tail, head))
+    def _chain(self, first: int, last: int) -> list[int]:
+        """Places along the border from one to another, both included; none where they are many."""
+        chain = [first]
+        while chain[-1] != last and len(chain) < LONGEST_END:
+            chain.append(self.after[chain[-1]])
+        return chain if chain[-1] == last else []
 
-    def _turn(self, at: int, a: int, b: int) -> None:
-        """Add the angle of a filling's corner to that of the faces at it."""
-        here = self._at(at)
-        self.angle[at] += _angle(self._at(a) - here, self._at(b) - here)
-
-    def _ends(self, a: int, b: int) -> tuple[int, int]:
-        return min(self.vertex[a], self.vertex[b]), max(self.vertex[a], self.vertex[b])
+    def _fit(self, triangles: list[tuple[int, int, int]], flattest: float, *, front: bool) -> bool:
+        """Fill with triangles, whose corners are places on the border, if there is room for them all."""
+        sides = {(t[n - 1], t[n]) for t in triangles for n in range(3)}
+        outer = [(a, b) for a, b in sides if (b, a) not in sides]
+        closed = [a for b, a in outer if self.after[a] == b]
+        ends = sorted((a, b) for a, b in outer if self.after[b] != a)
+        new = {self._ends(a, b) for a, b in sides if (a, b) not in outer} | {self._ends(a, b) for a, b in ends}
+        if new & self.edges or any(a == b for a, b in new):
+            return False
+        normal = self._normals(triangles, flattest, [self.normal[a] for a in closed])
+        if normal is None or (flattest < FLATTEST and any(self._crossed(*end) for end in ends)):
+            return False
+        for t in triangles:
+            self.filled.append((self.vertex[t[0]], self.vertex[t[1]], self.vertex[t[2]]))
+            for n in range(3):
+                self.angle[t[n]] += _angle(self._at(t[n - 1]) - self._at(t[n]), self._at(t[n - 2]) - self._at(t[n]))
+        self.edges |= new
+        done = {a for a in closed if self.before[a] in closed} - {a for end in ends for a in end}
+        for a, b in ends:
+            self.after[a], self.before[b] = b, a
+            self.normal[a] = next(n for n, t in zip(normal, triangles, strict=True) if a in t and b in t)
+            self.front[a] = front
+        for a in done:
+            self.vertex[a] = -1
+        return True
 
     def _offer(self, waiting: list[tuple[float, int, int, int]], k: int, width: float, slit: float) -> None:
         if self.vertex[k] < 0:
@@ -192,40 +196,35 @@ class _Border:
     def _at(self, k: int) -> FloatArray:
         return np.asarray(self.vertices[self.vertex[k]])
 
-    def _filling(
-        self,
-        corners: tuple[int, int, int],
-        new: list[tuple[int, int]],
-        flattest: float,
-        beside: tuple[FloatArray, FloatArray],
-    ) -> FloatArray | None:
-        """Normal of a triangle that fills, between faces of the given normals; None where there should be none.
+    def _ends(self, a: int, b: int) -> tuple[int, int]:
+        return min(self.vertex[a], self.vertex[b]), max(self.vertex[a], self.vertex[b])
 
-        corners : three places on the border, the second before the first along it, or across from it.
-        new : the sides that are not there yet, of it and of what is filled with it.
-        flattest : height of the lowest triangle worth adding, of its longest side.
-        """
-        if any(self._ends(*side) in self.edges or self.vertex[side[0]] == self.vertex[side[1]] for side in new):
-            return None
-        q, p, r = (self._at(n) for n in corners)
-        normal = np.cross(p - q, r - q)
-        size = float(np.linalg.norm(normal))
-        longest = max(float(np.linalg.norm(p - q)), float(np.linalg.norm(r - q)), float(np.linalg.norm(r - p)))
-        if size < flattest * longest * longest:
-            return None
-        normal /= size
-        if min(float(normal @ face) for face in beside) < LEAN_COSINE:
-            return None
-        # a tooth that reaches into the notch from elsewhere is no place for it
-        sides = [np.cross(normal, e - s) for s, e in ((q, p), (p, r), (r, q))]
-        mine = {self.vertex[n] for n in (*corners, *(end for side in new for end in side))}
-        for other in self.near.query_ball_point((p + q + r) / 3, longest):
-            if self.vertex[other] < 0 or self.vertex[other] in mine:
-                continue
-            point = self._at(other)
-            if all(float(side @ (point - s)) >= 0 for side, s in zip(sides, (q, p, r), strict=True)):
+    def _normals(
+        self, triangles: list[tuple[int, int, int]], flattest: float, beside: list[FloatArray]
+    ) -> list[FloatArray] | None:
+        """Normals of triangles that fill, between faces of the given normals; None where there should be none."""
+        mine = {self.vertex[n] for t in triangles for n in t}
+        normals = []
+        for t in triangles:
+            q, p, r = (self._at(n) for n in t)
+            normal = np.cross(p - q, r - q)
+            size = float(np.linalg.norm(normal))
+            longest = max(float(np.linalg.norm(p - q)), float(np.linalg.norm(r - q)), float(np.linalg.norm(r - p)))
+            if size < flattest * longest * longest:
                 return None
-        return np.asarray(normal)
+            normal /= size
+            if min(float(normal @ face) for face in beside) < LEAN_COSINE:
+                return None
+            # a tooth that reaches into the notch from elsewhere is no place for it
+            sides = [np.cross(normal, e - s) for s, e in ((q, p), (p, r), (r, q))]
+            for other in self.near.query_ball_point((p + q + r) / 3, longest):
+                if self.vertex[other] < 0 or self.vertex[other] in mine:
+                    continue
+                point = self._at(other)
+                if all(float(side @ (point - s)) >= 0 for side, s in zip(sides, (q, p, r), strict=True)):
+                    return None
+            normals.append(np.asarray(normal))
+        return normals
 
     def _crossed(self, a: int, b: int) -> bool:
         """Whether a border edge runs across the way from a to b: seen along the normal there, and no farther off."""
