@@ -43,8 +43,8 @@ def extended(surface: Surface, depth: float, slit: float = 0.0) -> Surface:
     """The surface with a collar `depth` mm wide along its outer borders and its holes filled.
 
     Faces and vertices of `surface` keep their numbers; those of the collar follow. A closed surface is returned as
-    it is. Notches narrower than `depth` and slits narrower than `slit` are filled first; along a hollow border the collar is narrowed where it would
-    fold over itself.
+    it is. Notches narrower than `depth` and slits narrower than `slit` are filled first; along a hollow border the
+    collar is narrowed where it would fold over itself.
     """
     n_mould_faces = len(surface.faces)
     notches = without_notches(surface, depth, slit)

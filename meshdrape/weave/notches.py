@@ -44,17 +44,14 @@ def without_notches(surface: Surface, width: float, slit: float = 0.0) -> NDArra
     """
     loops = [loop for loop in surface.border_loops if not surface.is_hole(loop)]
     narrow = [_narrow(surface, loop, width) for loop in loops]
-    if not len(loops):
+    first = np.cumsum([0, *map(len, loops)])
+    if not any(map(len, narrow)) and (slit == 0 or not _has_slits(surface, loops, slit, width)):
         return np.empty((0, 3), dtype=np.int64)
-    facing = facing_edges(surface, loops, slit, width) if slit > 0 else []
-    if not len(facing) and not any(map(len, narrow)):
-        return np.empty((0, 3), dtype=np.int64)
-    first = np.cumsum([0, *map(len, loops[:-1])])
     border = _Border(surface, loops)
-    border.fill(width, np.concatenate([a + b for a, b in zip(first, narrow, strict=True)]).tolist())
-    for k, p in facing:
-        if border.bridge(k, p):
-            border.fill(width, border.ends_of_front(), slit)
+    border.fill(width, np.concatenate([a + b for a, b in zip(first[:-1], narrow, strict=True)]).tolist())
+    # what is filled may face what did not face it before
+    while border.fill_slits(width, slit):
+        pass
     return np.array(border.filled, dtype=np.int64).reshape(-1, 3)
 
 
@@ -65,6 +62,18 @@ def _narrow(surface: Surface, loop: NDArray[np.int64], width: float) -> NDArray[
     across = (1 - NEARLY) * np.linalg.norm(np.roll(point, -1, axis=0) - np.roll(point, 1, axis=0), axis=1)
     hollow = (surface.vertex_angle[tail] - np.pi) * HOLLOW * width < (0.5 - NEARLY) * across
     return np.flatnonzero(~hollow & (across <= width))
+
+
+def _has_slits(surface: Surface, loops: list[NDArray[np.int64]], slit: float, width: float) -> bool:
+    """Whether there are any in borders as they are."""
+    if not loops:
+        return False
+    loop = np.concatenate(loops)
+    ends = np.cumsum([len(each) for each in loops])
+    after = np.arange(1, len(loop) + 1)
+    after[ends - 1] = ends - [len(each) for each in loops]
+    tail = surface.vertices[surface.faces[loop // 3, loop % 3]]
+    return bool(facing_edges(tail, surface.face_normal[loop // 3], after, slit, width))
 
 
 class _Border:
@@ -115,7 +124,21 @@ class _Border:
                 for end in (u, w):
                     self._offer(waiting, end, width, slit)
 
-    def bridge(self, k: int, p: int) -> bool:
+    def fill_slits(self, width: float, slit: float) -> bool:
+        """Fill slits up to a width between the border edges that face each other now; whether there are any."""
+        live = np.array([k for k, vertex in enumerate(self.vertex) if vertex >= 0])
+        if len(live) < 4 or slit == 0:
+            return False
+        after = np.searchsorted(live, np.array(self.after)[live])
+        tail = self.vertices[[self.vertex[k] for k in live]]
+        any_filled = False
+        for k, p in facing_edges(tail, np.array([self.normal[k] for k in live]), after, slit, width):
+            if self._bridge(int(live[k]), int(live[p])):
+                self.fill(width, self._ends_of_front(), slit)
+                any_filled = True
+        return any_filled
+
+    def _bridge(self, k: int, p: int) -> bool:
         """Fill between two border edges that face each other, from k and from p on; whether there is room for that."""
         m, v = self.after[k], self.after[p]
         if min(self.vertex[k], self.vertex[p]) < 0 or len({k, m, p, v}) < 4 or self.front[k] or self.front[p]:
@@ -138,7 +161,7 @@ class _Border:
                     return True
         return False
 
-    def ends_of_front(self) -> list[int]:
+    def _ends_of_front(self) -> list[int]:
         """Places at both ends of the edges that end a filled stretch of slit."""
         fronts = [k for k, front in enumerate(self.front) if front and self.vertex[k] >= 0]
         return fronts + [self.after[k] for k in fronts]
@@ -230,9 +253,7 @@ class _Border:
         """Whether a border edge runs across the way from a to b: seen along the normal there, and no farther off."""
         start, way = self._at(a), self._at(b) - self._at(a)
         size = float(np.linalg.norm(way))
-        live = [
-            k for k, vertex in enumerate(self.vertex) if vertex >= 0 and not {a, b} & {k, self.after[k]}
-        ]
+        live = [k for k, vertex in enumerate(self.vertex) if vertex >= 0 and not {a, b} & {k, self.after[k]}]
         tail = self.vertices[[self.vertex[k] for k in live]] - start
         head = self.vertices[[self.vertex[self.after[k]] for k in live]] - start
         normal = self.normal[a]

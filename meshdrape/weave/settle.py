@@ -42,11 +42,14 @@ class Edge:
         Unit directions at the parent and at the node, in the frames of their faces.
     bent : bool
         Whether the shortest path turns at a vertex, so that no straight walk from the parent ends at the node.
+    bend : int
+        The last vertex at which it turns; -1 for none.
     """
 
     leave: FloatArray
     arrive: FloatArray
     bent: bool
+    bend: int = -1
 
 
 @dataclass(frozen=True)
@@ -220,7 +223,7 @@ class NodeSearch:
             turn = float(gap @ np.array([-dy, dx])) / length
             straight = straight + turn * np.array([-straight[1], straight[0]])
             straight = straight / np.linalg.norm(straight)
-        return Edge(way.leave, way.arrive, bent=True)
+        return Edge(way.leave, way.arrive, bent=True, bend=way.bend)
 
 
 def shortest(surface: Surface, tail: Place, head: Place, length: float) -> bool:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 import numpy as np
 from numpy.typing import NDArray
-
-from meshdrape.surface import Surface
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -20,12 +20,19 @@ OVERLAP = 1e-6
 STEEPEST = 1.0
 
 
-def facing_edges(surface: Surface, loops: list[IntArray], slit: float, width: float) -> list[tuple[int, int]]:
-    """Pairs of border edges that face each other across a slit, by their places along all the loops, the nearest first.
+def facing_edges(
+    tail: FloatArray, normal: FloatArray, after: IntArray, slit: float, width: float
+) -> list[tuple[int, int]]:
+    """Pairs of border edges that face each other across a slit, the nearest first.
 
     Parameters
     ----------
-    loops : list of (k,) half-edges
+    tail : (n, 3) mm
+        Where each edge begins, with the surface on its left.
+    normal : (n, 3)
+        Of the surface beside it.
+    after : (n,) int
+        The edge that begins where it ends.
     slit : float
         Of the widest slit, mm: two edges are nowhere nearer than their gap, and that is no more.
     width : float
@@ -33,19 +40,13 @@ def facing_edges(surface: Surface, loops: list[IntArray], slit: float, width: fl
     """
     from scipy.spatial import cKDTree
 
-    loop = np.concatenate(loops)
-    face, k = loop // 3, loop % 3
-    tail = surface.vertices[surface.faces[face, k]]
-    head = surface.vertices[surface.faces[face, (k + 1) % 3]]
+    head = tail[after]
     length = np.linalg.norm(head - tail, axis=1)
     # every end of an edge that may lie across from another edge is found about its middle
-    tree = cKDTree(tail)
-    found = tree.query_ball_point(0.5 * (tail + head), 0.5 * length + width)
-    count = np.array([len(near) for near in found])
-    edge = np.repeat(np.arange(len(loop)), count)
-    vertex = np.concatenate([np.asarray(near, dtype=np.int64) for near in found])
+    found = cKDTree(tail).query_ball_point(0.5 * (tail + head), 0.5 * length + width)
+    edge = np.repeat(np.arange(len(tail)), [len(near) for near in found])
+    vertex = np.fromiter(chain.from_iterable(found), dtype=np.int64, count=len(edge))
     along = (head - tail) / length[:, None]
-    normal = surface.face_normal[face]
     outward = np.cross(along, normal)
     off = tail[vertex] - tail[edge]
     height = np.einsum("ij,ij->i", off, outward[edge])
@@ -54,35 +55,22 @@ def facing_edges(surface: Surface, loops: list[IntArray], slit: float, width: fl
     nearly = OVERLAP * length[edge]
     across = (height > 0) & (height <= width) & (lift <= STEEPEST * height)
     across &= (at >= -nearly) & (at <= length[edge] + nearly)
-    edge, vertex, height, at = edge[across], vertex[across], height[across], at[across]
+    if not across.any():
+        return []
+    edge, vertex, height = edge[across], vertex[across], height[across]
     # a vertex speaks for both border edges that end at it
-    before = np.concatenate([np.roll(np.arange(a, a + n), 1) for a, n in _spans(loops)])
-    a = np.concatenate([edge, edge])
-    b = np.concatenate([vertex, before[vertex]])
+    before = np.empty_like(after)
+    before[after] = np.arange(len(after))
+    a, b = np.concatenate([edge, edge]), np.concatenate([vertex, before[vertex]])
     gap = np.concatenate([height, height])
-    alike = np.einsum("ij,ij->i", along[a], along[b]) < FACING_COSINE
-    a, b, gap = a[alike], b[alike], gap[alike]
-    low = np.minimum(a, b)
-    pair = low * len(loop) + np.maximum(a, b)
-    pairs, first = np.unique(pair, return_inverse=True)
+    opposite = np.einsum("ij,ij->i", along[a], along[b]) < FACING_COSINE
+    a, b, gap = a[opposite], b[opposite], gap[opposite]
+    pairs, number = np.unique(np.minimum(a, b) * len(tail) + np.maximum(a, b), return_inverse=True)
     nearest = np.full(len(pairs), np.inf)
-    np.minimum.at(nearest, first, gap)
-    i, j = np.divmod(pairs, len(loop))
-    kept = (nearest <= slit) & _side_by_side(tail, head, along, length, i, j)
-    order = np.lexsort((pairs[kept], nearest[kept]))
-    return list(zip(i[kept][order].tolist(), j[kept][order].tolist(), strict=True))
-
-
-def _spans(loops: list[IntArray]) -> list[tuple[int, int]]:
-    """First place and number of places of each loop."""
-    count = [len(loop) for loop in loops]
-    return list(zip(np.cumsum([0, *count[:-1]]).tolist(), count, strict=True))
-
-
-def _side_by_side(
-    tail: FloatArray, head: FloatArray, along: FloatArray, length: FloatArray, i: IntArray, j: IntArray
-) -> NDArray[np.bool_]:
-    """Whether edges i and j overlap, seen across, over more than a point."""
+    np.minimum.at(nearest, number, gap)
+    i, j = np.divmod(pairs, len(tail))
     ends = [np.einsum("ij,ij->i", point[j] - tail[i], along[i]) for point in (tail, head)]
     overlap = np.minimum(np.maximum(*ends), length[i]) - np.maximum(np.minimum(*ends), 0.0)
-    return np.asarray(overlap > OVERLAP * np.minimum(length[i], length[j]))
+    kept = np.flatnonzero((nearest <= slit) & (overlap > OVERLAP * np.minimum(length[i], length[j])))
+    kept = kept[np.argsort(nearest[kept], kind="stable")]
+    return list(zip(i[kept].tolist(), j[kept].tolist(), strict=True))
