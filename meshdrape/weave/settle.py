@@ -238,7 +238,7 @@ def shortest(surface: Surface, tail: Place, head: Place, length: float) -> bool:
 def _measured(surface: Surface, tail: Place, head: Place, length: float) -> tuple[float, float]:
     """Distance by libigl, mm, where it is expected to be `length`, and by how much it may be off for points snapped."""
     ends = [SurfacePoint.from_frame(surface, *place) for place in (tail, head)]
-    return surface_distance(surface, ends[0], ends[1], bound=length * (1 + 1e-6))
+    return surface_distance(surface, ends[0], ends[1], bound=length)
 
 
 def step_from(surface: Surface, place: Place, move: FloatArray) -> Place | None:
