@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+# A patch reaches this share farther than the longest path expected; where none is, or that is exceeded by more than
+# the share that is round-off, a tenth farther.
+NEARLY, LOST, LARGER = 1e-6, 1e-10, 1.1
+
 
 def exact_distances(patch: Patch, source: int, targets: list[int]) -> FloatArray:
     """Shortest distances on a patch from one vertex to others, mm; infinite where libigl cannot tell.
@@ -108,13 +112,26 @@ def surface_distance(
     Parameters
     ----------
     bound : float, optional
-        A length the distance is not expected to exceed, mm.
+        A length the distance is not expected to exceed, mm. Where it does, it is measured again on a larger patch:
+        libigl now and then loses the shortest path to a point beside an edge, and is off by up to a millionth.
     """
+    if bound is None:
+        return _distance(surface, a, b, 0.0)
+    found, moved = _distance(surface, a, b, (1 + NEARLY) * bound)
+    if found > (1 + LOST) * bound:
+        again, moved_again = _distance(surface, a, b, LARGER * bound)
+        if again < found:
+            return again, moved_again
+    return found, moved
+
+
+def _distance(surface: Surface, a: SurfacePoint, b: SurfacePoint, reach: float) -> tuple[float, float]:
+    """The same, on a patch that holds at first the paths no longer than `reach`, mm; 0 for a tenth above the chord."""
     chord = float(np.linalg.norm(a.position(surface) - b.position(surface)))
     size = surface.diagonal
     # no path is shorter, but for round-off: libigl's own, and that of the places
     least = chord * (1 - 1e-9) - 32 * float(np.finfo(float).eps * np.abs(surface.vertices).max())
-    reach = max(1.1 * chord if bound is None else bound, chord, 1e-9 * size)
+    reach = max(reach or LARGER * chord, chord, 1e-9 * size)
     while True:
         faces = faces_between(surface, a, b, reach)
         if len(faces):

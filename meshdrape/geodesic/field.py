@@ -36,7 +36,7 @@ class Region:
 
     def __init__(self, surface: Surface, faces: IntArray) -> None:
         self.surface, self.faces = surface, faces
-        used, compact = np.unique(surface.faces[faces], return_inverse=True)
+        self.vertices, compact = np.unique(surface.faces[faces], return_inverse=True)
         code = surface.face_neighbour[faces]
         other = self.numbers(np.maximum(code, 0) // 3)
         mesh = surface.unfolding
@@ -44,8 +44,8 @@ class Region:
             plane=mesh.plane[faces],
             across=np.where((code >= 0) & (other >= 0), 3 * other + code % 3, -1),
             vertex=compact.reshape(-1, 3),
-            bends=surface.vertex_defect[used] < -BENDING,
-            angle=mesh.vertex_angle[used],
+            bends=surface.vertex_defect[self.vertices] < -BENDING,
+            angle=mesh.vertex_angle[self.vertices],
         )
 
     def numbers(self, faces: IntArray) -> IntArray:
@@ -68,14 +68,19 @@ class Way(NamedTuple):
         mm.
     leave, arrive : (2,)
         Unit directions at its two ends, in the frames of their faces.
-    bent : bool
-        Whether it turns at a vertex on its way.
+    bend : int
+        The last vertex at which it turns on its way; -1 where it runs straight.
     """
 
     length: float
     leave: FloatArray
     arrive: FloatArray
-    bent: bool
+    bend: int
+
+    @property
+    def bent(self) -> bool:
+        """Whether it turns at a vertex."""
+        return self.bend >= 0
 
 
 class DistanceField:
@@ -113,9 +118,10 @@ class DistanceField:
         if not np.isfinite(length):
             return None
         mesh = self._region.surface.unfolding
+        last = int(self._region.vertices[bend]) if bend >= 0 else -1
         begun = int(self._region.faces[base])
         leave = turn_into(mesh.plane, mesh.neighbour, mesh.frame, begun, lx, ly, self._source[0])
-        return Way(float(length), np.array(leave), np.array([ax, ay]), bool(bend >= 0))
+        return Way(float(length), np.array(leave), np.array([ax, ay]), last)
 
     def distances(self, face: IntArray, xy: FloatArray) -> FloatArray:
         """Shortest distances (n,) to places given by their faces (n,), -1 for none, and (n, 2) in their frames, mm."""

@@ -6,19 +6,19 @@ back: there a node is placed from any two neighbours that close a cell, in any o
 
 import math
 
+from meshdrape.kernels.aim import aim
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
 from meshdrape.kernels.place import DOUBTED, NOT_CONVERGED, PLACED, folds_before, place
 from meshdrape.kernels.shear import past_stop
 from meshdrape.kernels.sweep import FREE_WARP, FREE_WEFT, LOST, STOPPED, UNSURE, straight_on
-from meshdrape.kernels.walk import WALKED, off_mould, turn_into, walk
+from meshdrape.kernels.walk import off_mould
 
 OUTSIDE = 2
 MET_ITSELF = 4
 
 # Gap, in spacings, within which two fronts of the sheet agree on an edge.
 AGREE = 1e-10
-TURNS = 8
 # A node is not placed twice in vain.
 NOWHERE = -1
 
@@ -61,80 +61,52 @@ def _leads_from_mould(status, i, j, back_i, back_j):
 
 
 @kernel
-def join(mesh, net, start, family, i, j, step, dx, dy, length):
-    """Keep the edge from (i, j) to its neighbour, if a straight path near the given direction is one spacing long."""
+def join(mesh, net, start, family, i, j, step, length):
+    """Keep the edge from (i, j) to its neighbour, if a straight path of one spacing leads from one to the other.
+
+    Also where the two lie on sheets of the extension that lie one on the other: it is one plane there.
+    """
     i2 = i + step if family == WARP else i
     j2 = j if family == WARP else j + step
-    goal = net.face[i2, j2]
-    gx = net.xy[i2, j2, 0]
-    gy = net.xy[i2, j2, 1]
-    for _ in range(TURNS):
-        code, f, x, y, ex, ey = walk(
-            mesh.plane, mesh.neighbour, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], dx, dy, length
-        )
-        if code != WALKED:
-            return False
-        # the goal seen from the face the path ends in
-        hx = gx
-        hy = gy
-        if f != goal:
-            found = False
-            for k in range(3):
-                other = mesh.neighbour[goal, k]
-                if other >= 0 and other // 3 == f:
-                    c = mesh.crossing[goal, 4 * k]
-                    s = mesh.crossing[goal, 4 * k + 1]
-                    hx, hy = (
-                        c * gx - s * gy + mesh.crossing[goal, 4 * k + 2],
-                        s * gx + c * gy + mesh.crossing[goal, 4 * k + 3],
-                    )
-                    found = True
-                    break
-            if not found:
-                return False
-        ax = hx - x
-        ay = hy - y
-        size = math.sqrt(ax * ax + ay * ay)
-        gap = math.sqrt((hx - x - length * ex) ** 2 + (hy - y - length * ey) ** 2)
-        if gap <= AGREE * length:
-            ex, ey = turn_into(mesh.plane, mesh.neighbour, mesh.frame, f, ex, ey, goal)
-            keep_edge(net, start, family, i, j, step, dx, dy, ex, ey)
-            return True
-        if abs(size - length) > 1e-3 * length:
-            return False
-        c = (ax * ex + ay * ey) / size
-        s = (ay * ex - ax * ey) / size
-        dx, dy = c * dx - s * dy, s * dx + c * dy
-    return False
+    gap, dx, dy, ex, ey = aim(
+        mesh, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1],
+        net.face[i2, j2], net.xy[i2, j2, 0], net.xy[i2, j2, 1], length, AGREE * length,
+    )  # fmt: skip
+    if not gap <= AGREE * length:
+        return False
+    keep_edge(net, start, family, i, j, step, dx, dy, ex, ey)
+    return True
 
 
 @kernel
-def joins_all(mesh, net, start, si, sj, i, j, warp, weft):
+def joins_all(mesh, net, start, si, sj, i, j, off, warp, weft):
     """Whether a node just placed from (i - si, j) or (i, j - sj) is one spacing from every other neighbour placed.
 
-    Keeps the edges to those.
+    Keeps the edges to those. A neighbour beside the mould that does not agree with a node on it gives way: it is
+    OUTSIDE again.
+
+    Parameters
+    ----------
+    off : bool
+        Whether the node lies beside the mould.
     """
     status = net.status
-    for family in (WARP, WEFT):
-        length = warp if family == WARP else weft
-        for sense in (1, -1):
-            step = sense * (si if family == WARP else sj)
-            ni = i + step if family == WARP else i
-            nj = j if family == WARP else j + step
-            if not _has(status, ni, nj):
-                continue
-            bi = i - step if family == WARP else i
-            bj = j if family == WARP else j - step
-            # where there is an edge from the other side, straight on
-            if sense == 1 and _has(status, bi, bj):
-                _, _, dx, dy = edge_ends(mesh, net, start, family, bi, bj, step, length)
-            elif sense == -1:
-                # the edge to a parent is kept already, but for a free fibre's missing one
-                continue
-            else:
-                return False
-            if not join(mesh, net, start, family, i, j, step, dx, dy, length):
-                return False
+    # the edges to its parents are kept already
+    joins_warp = not _has(status, i + si, j) or join(mesh, net, start, WARP, i, j, si, warp)
+    joins_weft = not _has(status, i, j + sj) or join(mesh, net, start, WEFT, i, j, sj, weft)
+    if joins_warp and joins_weft:
+        return True
+    # what lies on a generator has its edges from there
+    on_generator = i + si == start.origin[0] or j == start.origin[1]
+    if not joins_warp and (off or on_generator or status[i + si, j] == PLACED):
+        return False
+    on_generator = i == start.origin[0] or j + sj == start.origin[1]
+    if not joins_weft and (off or on_generator or status[i, j + sj] == PLACED):
+        return False
+    if not joins_warp:
+        status[i + si, j] = OUTSIDE
+    if not joins_weft:
+        status[i, j + sj] = OUTSIDE
     return True
 
 
@@ -161,7 +133,7 @@ def complete(
     """Place nodes that no quadrant reached, in the sense (si, sj), in the rectangle from (i_first, j_first) on.
 
     As `sweep`, but from whatever cloth there is on the near side, and only where the node agrees with all its
-    neighbours: where two fronts of the sheet come together and do not, it is MET_ITSELF.
+    neighbours on the mould: where two fronts of the sheet come together and do not, it is MET_ITSELF.
 
     Parameters
     ----------
@@ -256,7 +228,7 @@ def complete(
             off = off_mould(mesh, net.face[i, j], net.xy[i, j, 0], net.xy[i, j, 1], slack)
             if off and not beside:
                 continue
-            if not joins_all(mesh, net, start, si, sj, i, j, warp, weft):
+            if not joins_all(mesh, net, start, si, sj, i, j, off, warp, weft):
                 if not off:
                     status[i, j] = MET_ITSELF
                 continue

@@ -208,6 +208,19 @@ def trace(
                 dx = (x - sx) / length
                 dy = (y - sy) / length
             done = begun + length
+            # the way to the vertex is longer than to the edge that was met: a node may lie on what is left of it
+            while n < count and (n + 1) * spacing < done - 1e-12 * spacing:
+                at = (n + 1) * spacing - begun
+                node_face[n] = face
+                node_xy[n, 0] = sx + at * dx
+                node_xy[n, 1] = sy + at * dy
+                node_out[n, 0] = dx
+                node_out[n, 1] = dy
+                node_in[n, 0] = dx
+                node_in[n, 1] = dy
+                n += 1
+            if n == count:
+                return WALKED, n, done, turned
             begun = done
             if n < count and done > n * spacing + 1e-9 * spacing:
                 through[n] = True

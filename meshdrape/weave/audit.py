@@ -160,7 +160,7 @@ def _spacing(net: Net, family: int) -> float:
 def _length(net: Net, family: int, i: int, j: int) -> tuple[float, float]:
     """Shortest distance between the ends of an edge, and how far they had to be moved to become vertices, mm."""
     tail, head = _point(net, i, j), _point(net, i + (family == WARP), j + (family == WEFT))
-    return surface_distance(net.surface, tail, head, bound=_spacing(net, family) * (1 + 1e-6))
+    return surface_distance(net.surface, tail, head, bound=_spacing(net, family))
 
 
 def _point(net: Net, i: int, j: int) -> SurfacePoint:

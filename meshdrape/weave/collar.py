@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from meshdrape.surface import Surface
 from meshdrape.weave.notches import without_notches
+from meshdrape.weave.outlines import triangulate
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -38,15 +39,15 @@ MOST_ROUNDS = 80
 ALIKE = 1e-12
 
 
-def extended(surface: Surface, depth: float) -> Surface:
+def extended(surface: Surface, depth: float, slit: float = 0.0) -> Surface:
     """The surface with a collar `depth` mm wide along its outer borders and its holes filled.
 
     Faces and vertices of `surface` keep their numbers; those of the collar follow. A closed surface is returned as
-    it is. Notches narrower than `depth` are filled first; along a hollow border the collar is narrowed where it would
-    fold over itself.
+    it is. Notches narrower than `depth` and slits narrower than `slit` are filled first; along a hollow border the
+    collar is narrowed where it would fold over itself.
     """
     n_mould_faces = len(surface.faces)
-    notches = without_notches(surface, depth)
+    notches = without_notches(surface, depth, slit)
     if len(notches):
         surface = surface.continued(np.empty((0, 3)), notches, n_mould_faces)
     vertices, faces = [], []
@@ -216,7 +217,7 @@ def _fill(surface: Surface, loop: IntArray, first: int) -> tuple[FloatArray, Int
     size = float(np.linalg.norm(normal))
     fan = np.stack([np.full(len(rim), first), rim, np.roll(rim, -1)], axis=1)
     if size > 0 and (doubled @ normal < 1e-9 * size * size / len(rim)).any():
-        ears = _triangulate(points - middle, normal / size)
+        ears = triangulate(points - middle, normal / size)
         if ears is not None and not _repeats_edge(surface, rim, rim[ears]):
             return np.empty((0, 3)), rim[ears]
     return middle[None], fan
@@ -234,22 +235,3 @@ def _repeats_edge(surface: Surface, rim: IntArray, ears: IntArray) -> bool:
         keys.append(tail[beside] * n + head[beside])
     # the rim itself the mould runs through the other way
     return bool(np.isin(keys[1], keys[0]).any())
-
-
-def _triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:
-    """Triangulation (n - 2, 3) of a polygon seen along its normal; None where it overlaps itself as seen so."""
-    import mapbox_earcut
-
-    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    across /= np.linalg.norm(across)
-    flat = np.stack([points @ across, points @ np.cross(normal, across)], axis=1)
-    corners = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], dtype=np.uint32))
-    ears = np.asarray(corners, dtype=np.int64).reshape(-1, 3)
-    a, b, c = (flat[ears[:, k]] for k in range(3))
-    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    whole = float(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]))
-    covers = len(ears) == len(flat) - 2 and np.isclose(np.abs(area).sum(), whole, rtol=1e-9)
-    if not covers or np.abs(area).min() <= 1e-12 * whole:
-        return None
-    ears[area < 0] = ears[area < 0][:, ::-1]
-    return ears

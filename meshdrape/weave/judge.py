@@ -121,17 +121,31 @@ class Judge:
         if found is None:
             search = self._search(i, j, sense)
             found = search.run(guess, side)
-        beyond = bool(
-            lattice.status[i - sense[0], j] == NodeStatus.OFF_MOULD
-            and lattice.status[i, j - sense[1]] == NodeStatus.OFF_MOULD
-        )
+        parents = (lattice.status[i - sense[0], j], lattice.status[i, j - sense[1]])
+        # the node's own guess is the end of an edge: that beside the mould, where sheets of the extension part, and a
+        # parent there too
+        beyond = parents.count(NodeStatus.OFF_MOULD) + off_mould(self._surface.unfolding, *guess, self._slack) > 1
         if found is None and not beyond:
             found = scan(search, self._place((i - sense[0], j - sense[1])), guess, side)
+        if found is not None and self._round_the_border(found):
+            found, beyond = None, True
         if found is None or self._folded(i, j, sense, found):
             # the extension is no mould: what fails on it is lost to it, not to the cloth
             lattice.status[i, j] = NodeStatus.OUTSIDE if beyond else NodeStatus.FOLDED
         else:
             self._write(i, j, sense, found)
+
+    def _round_the_border(self, found: Settled) -> bool:
+        """Whether a node lies beside the mould, across a corner of its border from a parent.
+
+        There sheets of the extension part, which no cloth goes round.
+        """
+        bends = [edge.bend for edge in (found.warp_edge, found.weft_edge) if edge.bend >= 0]
+        if not bends or not off_mould(self._surface.unfolding, *found.place, self._slack):
+            return False
+        surface = self._surface
+        around = np.isin(surface.faces, bends).any(axis=1)
+        return bool((surface.face_rim[around] >= 0).any())
 
     def _folded(self, i: int, j: int, sense: Sense, found: Settled) -> bool:
         """Whether the cell of a node found folds at one of its corners."""

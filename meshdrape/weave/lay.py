@@ -29,6 +29,7 @@ from meshdrape.weave.generators import (
 from meshdrape.weave.judge import Judge
 from meshdrape.weave.net import run_kernel
 from meshdrape.weave.quadrants import fill
+from meshdrape.weave.slits import SLIT
 from meshdrape.weave.status import NodeStatus
 
 # Depth of the collar in spacings. A cell's diagonal is shorter than two, so the parents of every node on the mould
@@ -99,7 +100,7 @@ def lay(
         If a start fibre cannot run as asked.
     """
     depth = _collar_depth(part, fabric, extent, courses)
-    surface = _with_collar(part, depth)
+    surface = _with_collar(part, depth, SLIT * fabric.longest)
     counts = generator_counts(part, fabric, extent)
     memory = free_memory()
     bounded = part.area if extent is None else min(part.area, (extent[0] + extent[1]) * (extent[2] + extent[3]))
@@ -162,15 +163,15 @@ def _collar_depth(part: Surface, fabric: Fabric, extent: Extent | None, courses:
     return depth
 
 
-def _with_collar(part: Surface, depth: float) -> Surface:
+def _with_collar(part: Surface, depth: float, slit: float) -> Surface:
     """The surface with a collar; the last ones used are kept with it for the next drape of the same spacing."""
-    kept: dict[float, Surface] = vars(part).setdefault("_collars", {})
-    surface = kept.pop(depth, None)
+    kept: dict[tuple[float, float], Surface] = vars(part).setdefault("_collars", {})
+    surface = kept.pop((depth, slit), None)
     if surface is None:
-        surface = extended(part, depth)
+        surface = extended(part, depth, slit)
         while len(kept) >= COLLARS_KEPT:
             kept.pop(next(iter(kept)))
-    kept[depth] = surface
+    kept[depth, slit] = surface
     return surface
 
 

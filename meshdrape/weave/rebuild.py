@@ -18,6 +18,7 @@ from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import free_memory, lay_generators, start_fibres
 from meshdrape.weave.net import Net, run_kernel
 from meshdrape.weave.prescribed import StartFibres, courses_on
+from meshdrape.weave.slits import SLIT
 from meshdrape.weave.start import part_under
 from meshdrape.weave.status import NodeStatus
 
@@ -114,7 +115,7 @@ def rebuild(mould: Mould, stored: StoredNodes, threads: int = 1) -> Rebuilt:
     given = stored.start_fibres
     courses, drawn_point = courses_on(mould, part, part_face, fabric, given, stored.seed, stored.direction)
     point = drawn_point or point
-    surface = extended(part, stored.collar_depth)
+    surface = extended(part, stored.collar_depth, SLIT * fabric.longest)
     counts = [n_warp - 1 - i0, n_weft - 1 - j0, i0, j0]
     room = (
         i0 * fabric.warp_spacing,

@@ -16,9 +16,9 @@ def built(monkeypatch):
     depths = []
     real = lay.extended
 
-    def extended(surface, depth):
+    def extended(surface, depth, slit):
         depths.append(depth)
-        return real(surface, depth)
+        return real(surface, depth, slit)
 
     monkeypatch.setattr(lay, "extended", extended)
     return depths

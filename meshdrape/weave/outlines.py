@@ -1,0 +1,28 @@
+"""A closed outline, filled with triangles of its own corners."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:
+    """Triangulation (n - 2, 3) of a polygon seen along its normal; None where it overlaps itself as seen so."""
+    import mapbox_earcut
+
+    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    across /= np.linalg.norm(across)
+    flat = np.stack([points @ across, points @ np.cross(normal, across)], axis=1)
+    corners = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], dtype=np.uint32))
+    ears = np.asarray(corners, dtype=np.int64).reshape(-1, 3)
+    a, b, c = (flat[ears[:, k]] for k in range(3))
+    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    whole = float(np.sum(flat[:, 0] * np.roll(flat[:, 1], -1) - np.roll(flat[:, 0], -1) * flat[:, 1]))
+    covers = len(ears) == len(flat) - 2 and np.isclose(np.abs(area).sum(), whole, rtol=1e-9)
+    if not covers or np.abs(area).min() <= 1e-12 * whole:
+        return None
+    ears[area < 0] = ears[area < 0][:, ::-1]
+    return ears
