@@ -209,11 +209,16 @@ def _vertex_cells(surface: Surface, nearest: FloatArray, cell: IntArray, on_fibr
     _, region = connected_components(coo_array((np.ones(len(ends[0])), ends), shape=(n, n)), directed=False)
     told = np.isfinite(nearest) & free[tail]
     # what most of a region's crossings say: an edge through a node may be first by round-off alone
-    votes, count = np.unique(np.column_stack([region[tail[told]], cell[told]]), axis=0, return_counts=True)
-    order = np.lexsort((-count, votes[:, 0]))
-    first = np.unique(votes[order, 0], return_index=True)
+    low = cell.min(axis=0)
+    i, j = (cell[told] - low).T
+    n_i, n_j = (cell.max(axis=0) - low + 1).tolist()
+    votes, count = np.unique((region[tail[told]] * n_i + i) * n_j + j, return_counts=True)
+    of_region = votes // (n_i * n_j)
+    order = np.lexsort((-count, of_region))
+    first = order[np.unique(of_region[order], return_index=True)[1]]
     found = np.full((int(region.max()) + 1, 2), -1)
-    found[first[0]] = votes[order][first[1], 1:]
+    found[of_region[first], 0] = votes[first] // n_j % n_i + low[0]
+    found[of_region[first], 1] = votes[first] % n_j + low[1]
     home = found[region]
     home[on_fibre] = -1
     return np.asarray(home)
