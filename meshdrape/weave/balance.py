@@ -15,7 +15,6 @@ from meshdrape.weave.curvature import Curvature, enclosed_curvature
 from meshdrape.weave.excess import Sides, corner_excess, laid_flat
 from meshdrape.weave.measures import Measures
 from meshdrape.weave.net import Net
-from meshdrape.weave.status import NodeStatus
 from meshdrape.weave.turning import turning
 
 FloatArray = NDArray[np.float64]
@@ -125,7 +124,7 @@ def balance(measures: Measures) -> Balance:
         along_warp = lacks + _so_far(turn[along][:, left], gaps.shape[0])
         along_weft = lacks + _so_far(turn[up][:, 1 - left], gaps.shape[1])
         own = side[along], side[up]
-        row, column = _excess(net, curvature, (si, sj), own, gaps.shape)
+        row, column = _excess(net, curvature, (si, sj), own, ~gaps)
         _add_short_sides(net, own, square, along_warp, along_weft, row, column)
         held = by_cell[rows, columns][::si, ::sj]
         first = along_warp[:, None] + along_weft[None, :] - lacks
@@ -158,11 +157,20 @@ def _generator_sides(net: Net, curvature: Curvature) -> list[FloatArray]:
 
 
 def _excess(
-    net: Net, curvature: Curvature, sense: tuple[int, int], side: tuple[FloatArray, FloatArray], shape: tuple[int, int]
+    net: Net,
+    curvature: Curvature,
+    sense: tuple[int, int],
+    side: tuple[FloatArray, FloatArray],
+    whole: NDArray[np.bool_],
 ) -> tuple[FloatArray, FloatArray]:
-    """Excess of the two corners beside the first of each cell of a quadrant for what lies in it, each `shape`, rad.
+    """Excess of the two corners beside the first of each cell of a quadrant for what lies in it, each (n, m) rad.
 
-    `side`: lengths of the edges of the quadrant's warp and weft half-fibre, mm.
+    Parameters
+    ----------
+    side : (n,), (m,) mm
+        Edges of the quadrant's warp and weft half-fibre.
+    whole : (n, m) bool
+        Cells of the quadrant that have all their corners.
     """
     fabric, surface, lattice = net.fabric, net.surface, net.lattice
     at = np.stack(
@@ -172,7 +180,8 @@ def _excess(
         ],
         axis=1,
     )
-    mine = (at >= 0).all(axis=1)
+    mine = np.flatnonzero(((at >= 0) & (at < whole.shape)).all(axis=1))
+    mine = mine[whole[tuple(at[mine].T)]]
     at, vertex, part = at[mine], curvature.vertex[mine], curvature.part[mine]
     corner = np.array(net.seed_index) + at * sense
     place = surface.vertices[vertex]
@@ -180,18 +189,16 @@ def _excess(
 
     def distance(di: int, dj: int) -> FloatArray:
         i, j = (corner + np.array([di, dj]) * sense).T
-        there = lattice.status[i, j] <= NodeStatus.OFF_MOULD
-        face, xy = frame[np.where(there, lattice.face[i, j], 0)], lattice.xy[i, j]
+        face, xy = frame[lattice.face[i, j]], lattice.xy[i, j]
         node = face[:, :3] + xy[:, :1] * face[:, 3:6] + xy[:, 1:] * face[:, 6:9]
-        # a cell without all its corners is not told, nor any beyond it
-        return np.where(there, np.linalg.norm(place - node, axis=1), fabric.shortest)
+        return np.asarray(np.linalg.norm(place - node, axis=1))
 
     warp, weft = fabric.warp_spacing, fabric.weft_spacing
     sides = Sides(
         np.where(at[:, 1] == 0, side[0][at[:, 0]], warp), np.where(at[:, 0] == 0, side[1][at[:, 1]], weft), warp, weft
     )
     where, angle = laid_flat(sides, distance(0, 0), distance(1, 0), distance(0, 1))
-    row, column = np.zeros(shape), np.zeros(shape)
+    row, column = np.zeros(whole.shape), np.zeros(whole.shape)
     for total, excess, flat in zip(
         (row, column), corner_excess(sides, angle, part, where), corner_excess(sides, angle), strict=True
     ):

@@ -52,7 +52,8 @@ def corner_excess(
     # the weft side as seen from the other bank of the cut
     first, end = vertex * (1 - closed), vertex + (up * np.exp(1j * angle) - vertex) * closed
     between = end - along
-    distance = np.abs(between)
+    # no cell has both of its far sides from one place; round-off of one must not divide by nothing
+    distance = np.maximum(np.abs(between), np.finfo(float).tiny)
     foot = (distance**2 + right**2 - top**2) / (2 * distance)
     height = np.sqrt(np.maximum(right**2 - foot**2, 0.0))
     last = along + between / distance * (foot - 1j * height)
