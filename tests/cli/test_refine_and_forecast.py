@@ -126,8 +126,12 @@ def test_a_mesh_cannot_be_refined(capfd, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["cone", "cube_corner", "cylinder", "hemisphere", "hypar", "krogh_double_curved", "wing_spar"]
-)
+    "name",
+    [
+        "blade_root", "c_spar", "cone", "cube_corner", "cylinder", "hemisphere", "hypar", "joggle", "krogh_double_curved",
+        "l_corner", "leading_edge", "pyramid", "saddle", "wing_spar",
+    ],
+)  # fmt: skip
 def test_noise_of_the_samples(name):
     """At the default tolerances below a twentieth of a locking angle of 7 degrees."""
     assert np.degrees(mesh_noise(meshdrape.read_mould(SAMPLES / f"{name}.step").surface)) < 7 / 20
