@@ -179,7 +179,7 @@ def _follow(mesh, face, x, y, dx, dy, length, head_face, aimed, bent, sides, nea
 
 @kernel(nogil=True)
 def cross(mesh, net, start, warp, weft, nearest, cell, mark, mark_share):
-    """Follow every edge of a net over the mesh.
+    """Follow every edge of a net over the mesh, but those of a generator that bend.
 
     Parameters
     ----------
@@ -217,6 +217,9 @@ def cross(mesh, net, start, warp, weft, nearest, cell, mark, mark_share):
                     continue
                 forward = i >= i0 if family == WARP else j >= j0
                 ti, tj, hi, hj = (i, j, i2, j2) if forward else (i2, j2, i, j)
+                # a generator's edge that bends is a chord of another length, which no walk of one spacing follows
+                if generator and start.arc[family if forward else family + 2, abs(hi - i0) + abs(hj - j0) - 1]:
+                    continue
                 face = net.face[ti, tj]
                 head_face = net.face[hi, hj]
                 x = net.xy[ti, tj, 0]

@@ -64,6 +64,8 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
     corners at (i, j) and (i + 1, j + 1) as they are, the other two as supplements. NaN where a corner is missing.
     """
     n_weft = net.status.shape[1]
+    i0 = start.origin[0]
+    j0 = start.origin[1]
     # weft edges of the row below, both ends
     below = np.empty((n_weft, 4))
     above = np.empty((n_weft, 4))
@@ -93,7 +95,8 @@ def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
                 continue
             g = net.face[i + 1, j]
             one_face = f == g and f == net.face[i, j + 1] and f == net.face[i + 1, j + 1]
-            if one_face:
+            # beside a generator, whose edges may bend, it need not be a rhombus
+            if one_face and i not in (i0 - 1, i0) and j not in (j0 - 1, j0):
                 px = net.xy[i + 1, j, 0] - net.xy[i, j, 0]
                 py = net.xy[i + 1, j, 1] - net.xy[i, j, 1]
                 qx = net.xy[i, j + 1, 0] - net.xy[i, j, 0]

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-# A residual of the curvature balance from this share of the locking angle on needs its reason.
-WORTH_A_WORD = 0.1
+# A residual of the curvature balance below this, degrees, is round-off.
+ROUND_OFF = 1e-6
 
 Rows = list[tuple[str, str]]
 
@@ -28,7 +28,7 @@ def drape_text(summary: dict[str, Any], written: Sequence[Path] = ()) -> str:
         *_start_fibres(summary["start_fibres"]),
         *_cloth(summary),
         *_shear(summary),
-        ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg"),
+        ("mesh noise", f"{summary['mesh_noise_deg']:.3f} deg: hardly a cell is farther off for lying on facets"),
         ("balance", _balance(summary)),
         ("audit", _audit(summary)),
         ("time", ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in summary["seconds"].items())),
@@ -70,8 +70,10 @@ def _cloth(summary: dict[str, Any]) -> Rows:
 
 
 def _shear(summary: dict[str, Any]) -> Rows:
-    at, face = summary["max_shear_at"], summary["max_shear_face"]
-    where = ("" if at is None else f" at ({_list(at)})") + (f", face {face}" if face else "")
+    if summary["max_shear_deg"] is None:
+        return [("max shear", "none: no whole cell lies on the mould")]
+    face = summary["max_shear_face"]
+    where = f" at ({_list(summary['max_shear_at'])})" + (f", face {face}" if face else "")
     rows = [("max shear", f"{summary['max_shear_deg']:.3f} deg{where}")]
     if "refinement" in summary:
         bar = summary["refinement"]
@@ -92,15 +94,11 @@ def _shear(summary: dict[str, Any]) -> Rows:
 
 def _balance(summary: dict[str, Any]) -> str:
     at = summary["balance_residual_at"]
-    where = "" if at is None else f", worst at ({_list(at)})"
-    off, lock = summary["balance_residual_deg"], summary["fabric"]["locking_angle_deg"]
-    text = f"shear within {off:.2g} deg of the enclosed curvature's{where}"
-    if off < WORTH_A_WORD * lock:
-        return text
-    # a corner of the mould in the same row of cells: half of it is counted, whichever side of the middle it lies on
-    return (
-        f"{text}, where curvature in the same row and column of cells leaves {summary['balance_open_deg']:.2g} deg open"
-    )
+    if at is None:
+        return "no cell whose shear could be foretold"
+    off, left_open = summary["balance_residual_deg"], summary["balance_open_deg"]
+    text = f"shear within {off:.2g} deg of the enclosed curvature's, worst at ({_list(at)})"
+    return text if off <= left_open + ROUND_OFF else f"{text}, more than the {left_open:.2g} deg that this leaves open"
 
 
 def _audit(summary: dict[str, Any]) -> str:

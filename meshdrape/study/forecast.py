@@ -13,6 +13,7 @@ from meshdrape.weave.balance import balance
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.measures import measure
+from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -34,7 +35,7 @@ class Forecast:
     Attributes
     ----------
     max_shear : float
-        Largest absolute value, rad; 0 where no rectangle lies wholly on the mould.
+        Largest absolute value, rad; pi / 2 or more where the cloth folds, 0 where no cell lies on the mould.
     position : (3,) mm
         Where.
     complete : bool
@@ -60,7 +61,7 @@ def forecast(
 
     The shear of a cell is the Gaussian curvature that its fabric rectangle encloses between the start fibres
     (Hazzidakis 1879). A wide lattice of some 900 rectangles, whatever the fabric's own spacing, tells which angle
-    defects lie in which.
+    defects lie in which, and for cells whose rectangle has gaps their own shear.
 
     Parameters
     ----------
@@ -83,13 +84,23 @@ def forecast(
                 threads=1)  # fmt: skip
     measures = measure(net)
     foretold = balance(measures)
-    counted = np.where(measures.cell_touches_mould, np.abs(foretold.predicted), np.nan)
+    # where a rectangle has gaps, past a border or where the cloth folds, the wide cell itself tells the least there is
+    told = np.where(np.isfinite(foretold.predicted), foretold.predicted, measures.cell_shear)
+    counted = np.where(measures.cell_touches_mould, np.abs(told), np.nan)
     known = np.isfinite(counted)
+    folded = np.argwhere(net.node_status == NodeStatus.FOLDED)
+    if len(folded):
+        # whatever was told before: the cells at these nodes would close
+        first = folded[np.argmin(np.abs(folded - net.seed_index).sum(axis=1))]
+        there = np.argwhere(net.node_status <= NodeStatus.OFF_MOULD)
+        i, j = there[np.argmin(np.abs(there - first).sum(axis=1))].tolist()
+        most = float(counted[known].max()) if known.any() else 0.0
+        return Forecast(max(np.pi / 2, most), net.positions(i, i + 1)[0, j], False, time.perf_counter() - begun)
     if not known.any():
         return Forecast(0.0, net.seed, False, time.perf_counter() - begun)
     i, j = np.unravel_index(int(np.nanargmax(counted)), counted.shape)
     position = net.positions(int(i), int(i) + 2)[:, int(j) : int(j) + 2].reshape(-1, 3).mean(axis=0)
-    missing = measures.cell_touches_mould & ~known
+    missing = measures.cell_touches_mould & ~np.isfinite(foretold.predicted)
     return Forecast(
         max_shear=float(counted[i, j]),
         position=np.asarray(position),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from meshdrape.kernels import emit
 from meshdrape.kernels.shear import cell_shear
+from meshdrape.weave.corners import corrections
 from meshdrape.weave.net import Net
 from meshdrape.weave.status import NodeStatus
 
@@ -164,4 +165,6 @@ def shear_of_cells(net: Net) -> FloatArray:
                 for a, b in net.row_blocks(0, n_warp - 1)
             ],
         )
+        for i, j, missing in corrections(net):
+            shear[i, j] += missing
     return shear

@@ -86,7 +86,7 @@ def summarise(
         "nodes": net.count(NodeStatus.PLACED),
         "cells": measures.n_cells,
         "cloth_mm": {"warp": warp, "weft": weft, "area_mm2": area},
-        "max_shear_deg": math.degrees(measures.max_shear),
+        "max_shear_deg": math.degrees(measures.max_shear) if measures.n_cells else None,
         "max_shear_at": measures.max_shear_position.tolist() if measures.n_cells else None,
         "max_shear_face": measures.max_shear_face or None,
         "over_locking_percent": 100 * measures.over_locking_fraction,
@@ -101,8 +101,8 @@ def summarise(
         "audit_max_relative_error": audit.max_relative_error,
         "audit": asdict(audit),
         "mesh_noise_deg": math.degrees(noise),
-        "balance_residual_deg": math.degrees(balance.worst),
-        "balance_open_deg": math.degrees(_doubt(balance)),
+        "balance_residual_deg": None if balance.worst_cell is None else math.degrees(balance.worst),
+        "balance_open_deg": math.degrees(balance.open),
         "balance_residual_at": None if balance.worst_position is None else balance.worst_position.tolist(),
         "faces": _by_cad_face(measures, field),
         "notes": [*mould.notes, *net.notes, *_meeting(net)],
@@ -161,20 +161,6 @@ def shortest_arc(angle: NDArray[np.float64]) -> tuple[float, float]:
     length = math.pi - float(gap[widest])
     turns = math.ceil((first + length / 2 - np.pi / 2) / np.pi - HALF_TURN)
     return first - np.pi * turns, first + length - np.pi * turns
-
-
-def _doubt(balance: Balance) -> float:
-    """What the balance leaves open at its worst cell, rad.
-
-    Angle defects in the last row and column of its fabric rectangle count by half, on whichever side of the cell's
-    middle they lie: half of them is the most that the shear can differ for it.
-    """
-    if balance.worst_cell is None:
-        return 0.0
-    (i, j), (i0, j0) = balance.worst_cell, balance.measures.net.seed_index
-    rows, columns = slice(min(i, i0), max(i + 1, i0)), slice(min(j, j0), max(j + 1, j0))
-    beside = np.abs(balance.cell_defect[i, columns]).sum() + np.abs(balance.cell_defect[rows, j]).sum()
-    return float(beside) / 2
 
 
 def _first_places(net: Net) -> dict[str, dict[str, Any]]:
@@ -265,9 +251,12 @@ def _warnings(measures: Measures, summary: dict[str, Any], noise: float) -> list
         if net.count(status)
     ]
     if noise > NOISE_SHARE * fabric.locking_angle:
+        # a mesh file is as fine as it is
+        is_mesh = net.mould.angle_tolerance is None
+        finer = "mesh the mould finer" if is_mesh else "tessellate finer with --angle-tolerance"
         warnings.append(
             f"the mesh alone can falsify the shear by {math.degrees(noise):.2f} degrees, more than a tenth of the "
-            f"locking angle; tessellate finer with --angle-tolerance"
+            f"locking angle; {finer}"
         )
     error = summary["audit_max_relative_error"]
     if error > 1e-7:

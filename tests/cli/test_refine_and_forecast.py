@@ -10,7 +10,7 @@ import pytest
 from command import SAMPLES, draped, run
 
 import meshdrape
-from meshdrape.weave.noise import mesh_noise
+from meshdrape.weave.noise import SIGMAS, mesh_noise
 
 # Sample, seed, direction, extent, how far the forecast may be off the drape's own maximum, share.
 STARTS = {
@@ -84,7 +84,8 @@ def test_refine_gives_the_maximum_its_bar(capfd, tmp_path):
     assert bar["max_shear_deg"][2] == summary["max_shear_deg"]
     assert bar["triangles"][2] == summary["mould"]["triangles"]
     assert 0 < bar["error_bar_deg"] < 0.1 * summary["max_shear_deg"]
-    assert bar["error_bar_deg"] >= bar["mesh_noise_deg"] == summary["mesh_noise_deg"]
+    assert bar["error_bar_deg"] >= bar["mesh_noise_deg"] / SIGMAS
+    assert bar["mesh_noise_deg"] == summary["mesh_noise_deg"]
     assert summary["seconds"]["refinement"] > 0
     plain = draped(capfd, SAMPLES / "hypar.step", tmp_path / "plain.ply", *start)
     assert plain["max_shear_deg"] == summary["max_shear_deg"]
@@ -125,8 +126,12 @@ def test_a_mesh_cannot_be_refined(capfd, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["cone", "cube_corner", "cylinder", "hemisphere", "hypar", "krogh_double_curved", "wing_spar"]
-)
+    "name",
+    [
+        "blade_root", "c_spar", "cone", "cube_corner", "cylinder", "hemisphere", "hypar", "joggle", "krogh_double_curved",
+        "l_corner", "leading_edge", "pyramid", "saddle", "wing_spar",
+    ],
+)  # fmt: skip
 def test_noise_of_the_samples(name):
     """At the default tolerances below a twentieth of a locking angle of 7 degrees."""
     assert np.degrees(mesh_noise(meshdrape.read_mould(SAMPLES / f"{name}.step").surface)) < 7 / 20

@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from moulds import cone, cube_corner, cylinder, hypar, icosphere, plate, wing_spar
+from moulds import cone, cube_corner, cylinder, hypar, icosphere, plate
 
 import meshdrape
-from meshdrape.surface import Surface
 from meshdrape.weave.balance import balance
-from meshdrape.weave.noise import mesh_noise
 
 
 def of(net):
@@ -65,34 +63,3 @@ def test_defects_are_counted_once():
     assert whole.all()
     assert whole.size == 400
     assert found.cell_defect.sum() == pytest.approx(area * 1e-6, rel=0.03)
-
-
-# --- the mesh's own noise --------------------------------------------------------------------------------------------
-
-
-def noise(mesh):
-    return mesh_noise(Surface.from_arrays(*mesh))
-
-
-def test_noise_of_developable_facets_is_none():
-    for mesh in (plate(), cylinder(n=40), cone(n=40)):
-        assert noise(mesh) < 1e-9
-
-
-@pytest.mark.parametrize("level", [3, 4])
-def test_noise_of_a_sphere_is_its_largest_defect(level):
-    surface = Surface.from_arrays(*icosphere(level))
-    assert mesh_noise(surface) == pytest.approx(surface.vertex_defect.max())
-    # about 4 pi over the vertices
-    assert 1 < mesh_noise(surface) / (4 * np.pi / len(surface.vertices)) < 1.6
-
-
-def test_noise_of_a_crease_is_half_its_turn_from_facet_to_facet():
-    """x = c y^2 / 2 on a flat wing: the crease turns by c dy from facet to facet; its own corners do not count."""
-    for n in (20, 80):
-        mesh = wing_spar(lambda t: 0 * t, lambda t: 0.2 * t**2 / 1000, np.linspace(0, 1000, n + 1), 900, 500)
-        assert noise(mesh) == pytest.approx(0.5 * 0.4 / n, rel=0.02)
-
-
-def test_corners_of_the_mould_are_not_noise():
-    assert noise(cube_corner()) == 0

@@ -11,7 +11,7 @@ from references import Crease, CreaseNet
 
 import meshdrape
 from meshdrape.kernels.edges import WARP, WEFT, edge_ends
-from meshdrape.weave.balance import balance
+from meshdrape.weave.balance import OPEN_SHARE, balance
 from meshdrape.weave.curvature import enclosed_curvature
 
 LONG = (1.0, 0.0, 0.0)
@@ -81,8 +81,8 @@ def test_gauss_bonnet_where_the_cloth_folds():
 
 
 @pytest.mark.parametrize("name", [name for name in EVERY if name not in FOLDED])
-def test_residual_is_within_what_is_counted_by_halves(name):
-    """Defects of the cell's own row and column, half of which are counted: what lies inside is exact."""
+def test_residual_is_within_what_is_left_open(name):
+    """A tenth of half the defects of the cell's own row and column: what lies inside is exact."""
     found = balance(meshdrape.measure(EVERY[name].drape()))
     size = np.abs(found.cell_defect)
     i0, j0 = found.measures.net.seed_index
@@ -90,9 +90,12 @@ def test_residual_is_within_what_is_counted_by_halves(name):
     for i, j in np.argwhere(np.isfinite(found.residual) & found.measures.cell_touches_mould):
         row = size[i, j0 : j + 1] if j >= j0 else size[i, j:j0]
         column = size[i0 : i + 1, j] if i >= i0 else size[i:i0, j]
-        assert abs(found.residual[i, j]) <= row.sum() + column.sum() + 1e-8, (i - i0, j - j0)
+        assert abs(found.residual[i, j]) <= OPEN_SHARE * (row.sum() + column.sum()) / 2 + 1e-8, (i - i0, j - j0)
         checked += 1
     assert checked > 10
+    assert found.worst <= found.open + 1e-8
+    # 0.13 degrees where a cell lies on some thirty triangles, a hundredth elsewhere
+    assert np.degrees(found.worst) < 0.25
 
 
 def test_the_generators_vertices_count_half_to_each_side():

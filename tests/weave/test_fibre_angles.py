@@ -1,11 +1,15 @@
 """What the summary says of fibre angles and of the curvature balance."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import meshdrape
+from meshdrape.output import json_text
 from meshdrape.output.drape_text import drape_text
 from meshdrape.weave import read_off
 from meshdrape.weave.balance import balance
@@ -44,22 +48,51 @@ def pyramid():
 
 
 @pytest.mark.parametrize(("spacing", "direction"), [(20.0, (0.05, 1, 0)), (20.0, (0.2, 1, 0)), (40.0, (-0.07, 1, 0))])
-def test_what_an_apex_leaves_open_is_told(spacing, direction):
-    """Beside the apex's row of cells the balance counts half of it: no more than that is off, and the page says why."""
+def test_an_apex_leaves_nothing_open(spacing, direction):
+    """In its row and column of cells too, where it counts by the part beyond which each lies, shear is foretold."""
     net = meshdrape.drape(pyramid(), meshdrape.Fabric(spacing), (0, 222, -314), direction)
     measures = meshdrape.measure(net)
     foretold = balance(measures)
-    summary = summarise(
-        measures, read_off(measures), meshdrape.audit(net, 20), foretold, {"total": 0.0}, "meshdrape drape"
-    )
-    assert summary["balance_residual_deg"] > 30
-    assert summary["balance_open_deg"] == pytest.approx(60.0)
-    assert summary["balance_residual_deg"] <= summary["balance_open_deg"]
+    summary = summary_of(measures, foretold)
+    # half of the apex's 120 degrees would be 60 off in the worst cell
+    assert summary["max_shear_deg"] > 30
+    assert np.degrees(np.abs(foretold.cell_defect).max()) == pytest.approx(120)
+    assert summary["balance_residual_deg"] < 1e-9
     (row,) = (line for line in drape_text(summary).splitlines() if line.startswith("   balance"))
-    assert "agrees" not in row
-    assert row.endswith("leaves 60 deg open")
-    # cells of which no defect lies in the last row or column are foretold to round-off
-    i, j = np.argwhere(foretold.cell_defect > 1).T
-    clear = np.ones_like(foretold.residual, dtype=bool)
-    clear[i], clear[:, j] = False, False
-    assert np.nanmax(np.abs(foretold.residual[clear])) < 1e-11
+    assert "open" not in row
+
+
+def summary_of(measures, foretold):
+    return summarise(
+        measures, read_off(measures), meshdrape.audit(measures.net, 20), foretold, {"total": 0.0}, "meshdrape drape"
+    )
+
+
+def test_a_shear_that_is_not_foretold_is_told():
+    """A net whose shear is not that of the curvature under it: more than its vertices leave open."""
+    net = meshdrape.drape(pyramid(), meshdrape.Fabric(40.0), (0, 222, -314), (-0.07, 1, 0))
+    measures = meshdrape.measure(net)
+    shear = measures.cell_shear.copy()
+    i, j = np.argwhere(measures.cell_touches_mould)[7]
+    shear[i, j] += RAD(9.0)
+    wrong = replace(measures, cell_shear=shear)
+    summary = summary_of(wrong, balance(wrong))
+    assert summary["balance_residual_deg"] == pytest.approx(9.0, abs=1e-9)
+    (row,) = (line for line in drape_text(summary).splitlines() if line.startswith("   balance"))
+    assert "shear within 9 deg" in row
+    assert row.endswith("that this leaves open")
+
+
+def test_a_net_without_cells_says_so_in_words():
+    """Cloth of less than a cell: no number where there is none, and null in JSON."""
+    net = meshdrape.drape(pyramid(), meshdrape.Fabric(40.0), (0, 222, -314), (0.1, 1, 0), extent=(100, 100, 0, 0))
+    measures = meshdrape.measure(net)
+    assert measures.n_cells == 0
+    summary = summary_of(measures, balance(measures))
+    page = drape_text(summary)
+    assert "max shear  none: no whole cell lies on the mould\n" in page
+    assert "  balance  no cell whose shear could be foretold\n" in page
+    assert "nan" not in page.lower().replace("meshdrape", "")
+    told = json.loads(json_text(summary))
+    for name in ("max_shear_deg", "max_shear_at", "balance_residual_deg", "balance_residual_at"):
+        assert told[name] is None, name
