@@ -146,9 +146,9 @@ def drape(
     if direction is None:
         direction = default_direction(part, point.face)
     # far from the origin, places in space would be too coarse to close a cell by; a path is drawn where it was given
-    near, by = part.brought_near if drawn is None else (part, np.zeros(3))
+    close, by = part.brought_near if drawn is None else (part, np.zeros(3))
     laid = lay(
-        near,
+        close,
         fabric,
         point,
         direction,
@@ -160,12 +160,12 @@ def drape(
         settle_every=engine == "libigl",
     )
     surface, lattice, start = laid.surface, laid.lattice, laid.start
-    end_where_met(near, surface, fabric, lattice, start)
+    end_where_met(close, surface, fabric, lattice, start)
     if not recrossing:
-        creases = creases_of(near, mould.triangle_face[part_face], mould.angle_tolerance)
+        creases = creases_of(close, mould.triangle_face[part_face], mould.angle_tolerance)
         end_where_recrossed(creases, surface, fabric, lattice, start, threads)
     trim(surface, fabric, lattice, start, threads)
-    if near is not part:
+    if close is not part:
         surface = surface.moved(-by)
     frame = surface.unfolding.frame[start.face[0]]
     return Net(
