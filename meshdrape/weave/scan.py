@@ -1,6 +1,7 @@
 """All nodes there can be: the circle about each parent scanned for points at one spacing from the other.
 
-About each, for behind a saddle vertex no straight radius of one of them gets, but one of the other's may. A search from a first guess may miss a node that exists. Where the scan finds none either, the cloth folds there.
+About each, for behind a saddle vertex no straight radius of one of them gets, but one of the other's may. A search from
+a first guess may miss a node that exists. Where the scan finds none either, the cloth folds there.
 """
 
 from __future__ import annotations
