@@ -15,6 +15,10 @@ from meshdrape.kernels.tables import Unfolding
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# A mould this many of its own diagonals from the origin is far off: its coordinates keep their offset's digits, not
+# its own. Less it by a number within a factor of two and nothing is rounded.
+FAR_OFF = 4.0
+
 
 @dataclass(frozen=True)
 class SurfacePoint:
@@ -248,6 +252,28 @@ class Surface:
             return self
         faces = self.faces[:n]
         return Surface.from_arrays(self.vertices[: int(faces.max()) + 1], faces)
+
+    @cached_property
+    def brought_near(self) -> tuple[Surface, FloatArray]:
+        """The same surface near the origin, and by how much it was moved, (3,) mm; itself and 0 if it is near.
+
+        Places in space then have the digits that places within a face have. Along each axis the mould is moved only
+        from so far off that no coordinate is rounded.
+        """
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        middle = 0.5 * low + 0.5 * high
+        by = np.where(np.abs(middle) > FAR_OFF * self.diagonal, -middle, 0.0)
+        return (self.moved(by) if by.any() else self), by
+
+    def moved(self, by: FloatArray) -> Surface:
+        """The surface shifted by (3,) mm; what lies within its faces stays the same to the bit."""
+        vertices = self.vertices + by
+        vertices.setflags(write=False)
+        surface = Surface(vertices, self.faces, self.face_neighbour, self.face_rim)
+        frame = self.unfolding.frame.copy()
+        frame[:, :3] += by
+        vars(surface)["unfolding"] = self.unfolding._replace(frame=frame)
+        return surface
 
     @property
     def n_components(self) -> int:

@@ -189,8 +189,8 @@ def _cut(
         # an end on an edge gives the face some depth, lest nothing be left of it but that edge
         middle = surface.vertices[surface.faces[face]].mean(axis=0)
         for end in ends:
-            if end.face == face:
-                inward = middle - end.position(surface)
+            inward = middle - end.position(surface)
+            if end.face == face and inward.any():
                 inside.append(end.position(surface) + min(0.5, radius / float(np.linalg.norm(inward))) * inward)
         patch._vertices += [place.tolist() for place in inside]
         points = list(dict.fromkeys(ring)) + list(range(first, first + len(inside)))

@@ -19,7 +19,7 @@ from meshdrape.weave.meeting import end_where_met
 from meshdrape.weave.net import Net, Request
 from meshdrape.weave.prescribed import courses_on, prescribe
 from meshdrape.weave.recross import creases_of, end_where_recrossed
-from meshdrape.weave.start import part_under
+from meshdrape.weave.start import numbers, part_under
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -109,15 +109,15 @@ def drape(
     NetError
         If the net would not fit in the memory.
     """
+    _check_request(mould, fabric, engine, extent, stop_at, threads)
     threads = threads or os.cpu_count() or 1
-    _check_request(mould, fabric, engine, extent, stop_at)
     given = prescribe(warp_turn, weft_turn, warp_path, weft_path)
     drawn = given.paths[0] if given.paths[0] is not None else given.paths[1]
     whole = mould.surface
     asked = seed is not None
     if seed is None:
         seed = (whole.middle if drawn is None else whole.closest_point(drawn[0])[0]).position(whole)
-    seed = np.asarray(seed, dtype=np.float64)
+    seed = numbers("seed", seed)
     # NaN fails the comparison too
     if seed.shape != (3,) or not (np.abs(seed) <= FARTHEST).all():
         msg = f"seed {seed.tolist()} is not a point within {FARTHEST:g} mm; give X,Y,Z in mm"
@@ -145,8 +145,10 @@ def drape(
             notes.append(f"the seed was moved {moved:.4g} mm onto the drawn fibre")
     if direction is None:
         direction = default_direction(part, point.face)
+    # far from the origin, places in space would be too coarse to close a cell by; a path is drawn where it was given
+    close, by = part.brought_near if drawn is None else (part, np.zeros(3))
     laid = lay(
-        part,
+        close,
         fabric,
         point,
         direction,
@@ -158,11 +160,13 @@ def drape(
         settle_every=engine == "libigl",
     )
     surface, lattice, start = laid.surface, laid.lattice, laid.start
-    end_where_met(part, surface, fabric, lattice, start)
+    end_where_met(close, surface, fabric, lattice, start)
     if not recrossing:
-        creases = creases_of(part, mould.triangle_face[part_face], mould.angle_tolerance)
+        creases = creases_of(close, mould.triangle_face[part_face], mould.angle_tolerance)
         end_where_recrossed(creases, surface, fabric, lattice, start, threads)
     trim(surface, fabric, lattice, start, threads)
+    if close is not part:
+        surface = surface.moved(-by)
     frame = surface.unfolding.frame[start.face[0]]
     return Net(
         mould=mould,
@@ -199,6 +203,7 @@ def _check_request(
     engine: str,
     extent: tuple[float, float, float, float] | None,
     stop_at: float | None,
+    threads: int | None,
 ) -> None:
     """Raise StartError or FabricError for what no mould could be draped with, or not this one."""
     if engine not in ENGINES:
@@ -215,9 +220,15 @@ def _check_request(
             f"spacing {shortest:g} mm is lost in the round-off of a mould {size:g} mm across; check the unit of either"
         )
         raise FabricError(msg)
-    if extent is not None and (len(extent) != 4 or not all(length >= 0 for length in extent)):
-        msg = f"extent {tuple(extent)} must be four lengths in mm, none negative: warp-, warp+, weft-, weft+"
+    if extent is not None:
+        lengths = numbers("extent", extent)
+        if lengths.shape != (4,) or not (lengths >= 0).all():
+            given = tuple(np.ravel(lengths).tolist())
+            msg = f"extent {given} must be four lengths in mm, none negative: warp-, warp+, weft-, weft+"
+            raise StartError(msg)
+    if threads is not None and not (isinstance(threads, int | np.integer) and threads > 0):
+        msg = f"threads is {threads!r}; give a whole number from 1 on, or none for all cores"
         raise StartError(msg)
-    if stop_at is not None and not stop_at > 0:
+    if stop_at is not None and not numbers("stop_at", stop_at) > 0:
         msg = f"the cloth cannot stop at a shear of {math.degrees(stop_at):g} degrees; give one above 0"
         raise StartError(msg)

@@ -33,7 +33,14 @@ class Fabric:
 
     def __post_init__(self) -> None:
         """Check every number once."""
-        spacings = self.spacing if isinstance(self.spacing, tuple | list) else (self.spacing, self.spacing)
+        # of numpy's arrays the numbers
+        given = self.spacing.tolist() if hasattr(self.spacing, "tolist") else self.spacing
+        spacings = [
+            _number("spacing", value) for value in (given if isinstance(given, tuple | list) else (given, given))
+        ]
+        initial_angle, locking_angle = (
+            _number(name.replace("_", " "), getattr(self, name)) for name in ("initial_angle", "locking_angle")
+        )
         if len(spacings) != 2:
             msg = f"spacing has {len(spacings)} values; give one, or two: along warp and along weft"
             raise FabricError(msg)
@@ -41,17 +48,15 @@ class Fabric:
             if not (math.isfinite(value) and value > 0):
                 msg = f"{name} spacing is {value:g} mm; it must be a positive length"
                 raise FabricError(msg)
-        if not math.radians(5) <= self.initial_angle <= math.radians(175):
-            msg = f"initial angle is {math.degrees(self.initial_angle):g} degrees; it must lie between 5 and 175"
+        if not math.radians(5) <= initial_angle <= math.radians(175):
+            msg = f"initial angle is {math.degrees(initial_angle):g} degrees; it must lie between 5 and 175"
             raise FabricError(msg)
-        if not 0 < self.locking_angle < math.pi / 2:
-            msg = f"locking angle is {math.degrees(self.locking_angle):g} degrees; it must lie between 0 and 90"
+        if not 0 < locking_angle < math.pi / 2:
+            msg = f"locking angle is {math.degrees(locking_angle):g} degrees; it must lie between 0 and 90"
             raise FabricError(msg)
-        object.__setattr__(
-            self,
-            "spacing",
-            tuple(float(v) for v in spacings) if spacings[0] != spacings[1] else float(spacings[0]),
-        )
+        object.__setattr__(self, "spacing", tuple(spacings) if spacings[0] != spacings[1] else spacings[0])
+        object.__setattr__(self, "initial_angle", initial_angle)
+        object.__setattr__(self, "locking_angle", locking_angle)
 
     @property
     def warp_spacing(self) -> float:
@@ -72,3 +77,12 @@ class Fabric:
     def shortest(self) -> float:
         """The narrower of the two spacings, mm."""
         return min(self.warp_spacing, self.weft_spacing)
+
+
+def _number(name: str, value: object) -> float:
+    """A number of whatever kind, numpy's too, as a float; FabricError where it is none."""
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        msg = f"{name} is {value!r}; it must be a number"
+        raise FabricError(msg) from None

@@ -1,6 +1,7 @@
-"""All nodes there can be: the circle about one parent scanned for points at one spacing from the other.
+"""All nodes there can be: the circle about each parent scanned for points at one spacing from the other.
 
-A search from a first guess may miss a node that exists. Where the scan finds none either, the cloth folds there.
+About each, for behind a saddle vertex no straight radius of one of them gets, but one of the other's may. A search from
+a first guess may miss a node that exists. Where the scan finds none either, the cloth folds there.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def scan(search: NodeSearch, corner: Place, guess: Place, side: float) -> Settle
     known = SurfacePoint.from_frame(surface, *corner).position(surface)
     shortest = float(search.length.min())
     starts = []
-    for place in _crossings(search):
+    for place in (place for about in (0, 1) for place in _crossings(search, about)):
         at = SurfacePoint.from_frame(surface, *place).position(surface)
         starts.append((float(np.linalg.norm(at - near)), place))
     for _, place in sorted(starts):
@@ -54,10 +55,13 @@ def scan(search: NodeSearch, corner: Place, guess: Place, side: float) -> Settle
     return None
 
 
-def _crossings(search: NodeSearch) -> Iterator[Place]:
-    """Places on the circle about A, to a fraction of a degree, where the distance to B passes the spacing."""
+def _crossings(search: NodeSearch, about: int) -> Iterator[Place]:
+    """Places on the circle about one parent, A or B, where the distance to the other passes the spacing.
+
+    To a fraction of a degree.
+    """
     turns = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
-    misses = _misses(search, turns)
+    misses = _misses(search, about, turns)
     for k in range(DIRECTIONS):
         low, high = turns[k], turns[k] + 2 * np.pi / DIRECTIONS
         (place, before), (beyond, after) = misses[k], misses[(k + 1) % DIRECTIONS]
@@ -70,20 +74,22 @@ def _crossings(search: NodeSearch) -> Iterator[Place]:
             continue
         # the search closes in from where the chord between the two passes zero
         turn = low + (high - low) * before / (before - after)
-        ((there, miss),) = _misses(search, np.array([turn]))
+        ((there, miss),) = _misses(search, about, np.array([turn]))
         yield from (start for start in (there if np.isfinite(miss) else None, place) if start is not None)
 
 
-def _misses(search: NodeSearch, turns: FloatArray) -> list[tuple[Place | None, float]]:
-    """Ends of the straight paths that leave A at given angles, and how far each misses being one spacing from B, mm.
+def _misses(search: NodeSearch, about: int, turns: FloatArray) -> list[tuple[Place | None, float]]:
+    """Ends of the straight paths that leave a parent at given angles, and by how much each is too far from the other.
 
-    NaN where a path leaves the surface, or is not the shortest to its end.
+    In mm; NaN where a path leaves the surface, or is not the shortest to its end.
     """
-    radius = float(search.length[0])
-    places = [step_from(search.surface, search.parents[0], radius * np.array([np.cos(t), np.sin(t)])) for t in turns]
+    radius = float(search.length[about])
+    places = [
+        step_from(search.surface, search.parents[about], radius * np.array([np.cos(t), np.sin(t)])) for t in turns
+    ]
     face = np.array([-1 if place is None else place[0] for place in places])
     xy = np.array([(0.0, 0.0) if place is None else place[1:] for place in places])
-    to_a, to_b = (field.distances(face, xy) for field in search.fields)
-    is_radius = np.isfinite(to_b) & (np.abs(to_a - radius) <= radius * NO_RADIUS)
-    misses = np.where(is_radius, to_b - search.length[1], np.nan)
+    own, other = (search.fields[parent].distances(face, xy) for parent in (about, 1 - about))
+    is_radius = np.isfinite(other) & (np.abs(own - radius) <= radius * NO_RADIUS)
+    misses = np.where(is_radius, other - search.length[1 - about], np.nan)
     return list(zip(places, misses.tolist(), strict=True))

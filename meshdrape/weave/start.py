@@ -101,15 +101,34 @@ def part_under(whole: Surface, point: SurfacePoint, seed: ArrayLike) -> tuple[Su
     return part, part_face, part.closest_point(np.asarray(seed, dtype=np.float64))[0]
 
 
+def numbers(name: str, value: ArrayLike) -> FloatArray:
+    """What was given for `name`, as an array of numbers.
+
+    Raises
+    ------
+    StartError
+        If it is none.
+    """
+    try:
+        given = np.asarray(value)
+        # numpy would read a text as a number
+        if given.dtype.kind in "US":
+            raise TypeError
+        return given.astype(np.float64)
+    except (TypeError, ValueError):
+        msg = f"{name} is {' '.join(repr(value).split()):.80}; give numbers"
+        raise StartError(msg) from None
+
+
 def unit_direction(direction: ArrayLike) -> FloatArray:
     """A direction of unit length, (3,).
 
     Raises
     ------
     StartError
-        If it is zero or not finite.
+        If it is zero, not finite or not of numbers.
     """
-    along = np.asarray(direction, dtype=np.float64)
+    along = numbers("direction", direction)
     largest = float(np.abs(along).max()) if along.shape == (3,) else math.nan
     if not (math.isfinite(largest) and largest > 0):
         msg = f"direction {_triple(along)} is no direction: give three numbers that are not all zero"

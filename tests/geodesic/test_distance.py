@@ -273,3 +273,17 @@ def test_on_a_convex_mesh_it_is_the_shortest_straight_line():
         line = straight_line(mould.surface, a.face, ends[0], b.face, ends[1], reach=150.0)
         assert line is not None
         assert meshdrape.geodesic_distance(mould, *ends) == pytest.approx(line.length, rel=1e-12)
+
+
+def test_from_the_very_middle_of_a_large_triangle():
+    """Of a triangle much larger than the path only what lies near is kept; its middle is what the rest is held by."""
+    mould = Mesh(np.array([[0.0, 0, 0], [900, 0, 0], [0, 900, 0]]), np.array([[0, 1, 2]])).mould()
+    assert meshdrape.geodesic_distance(mould, (300, 300, 0), (310, 300, 0)) == pytest.approx(10, rel=1e-12)
+    assert meshdrape.geodesic_distance(mould, (300, 295, 0), (300, 300, 0)) == pytest.approx(5, rel=1e-12)
+
+
+def test_a_drape_from_the_middle_of_a_face_by_libigl_alone():
+    mould = Mesh(np.array([[0.0, 0, 0], [900, 0, 0], [0, 900, 0]]), np.array([[0, 1, 2]])).mould()
+    net = meshdrape.drape(mould, meshdrape.Fabric(50.0), (300, 300, 0), (2, 1, 0), engine="libigl")
+    assert np.count_nonzero(net.node_status == meshdrape.NodeStatus.PLACED) > 140
+    assert meshdrape.audit(net).max_relative_error < 1e-12

@@ -48,6 +48,12 @@ def raises_one_line(exception, *words):
     ({"spacing": 5.0, "locking_angle": 0.0}, ["locking angle"]),
     ({"spacing": 5.0, "locking_angle": 7.0}, ["locking angle"]),
     ({"spacing": 5.0, "locking_angle": NAN}, ["locking angle"]),
+    ({"spacing": "fine"}, ["spacing", "fine", "number"]),
+    ({"spacing": None}, ["spacing", "None", "number"]),
+    ({"spacing": (5.0, "wide")}, ["spacing", "wide"]),
+    ({"spacing": np.array([5.0, 5.0, 5.0])}, ["3"]),
+    ({"spacing": 5.0, "initial_angle": "right"}, ["initial angle", "right"]),
+    ({"spacing": 5.0, "locking_angle": [0.1]}, ["locking angle", "0.1"]),
 ])  # fmt: skip
 def test_fabric(keywords, words):
     with raises_one_line(FabricError, *words):
@@ -62,6 +68,10 @@ def test_fabric_as_given():
     assert (square.initial_angle, square.locking_angle) == pytest.approx((np.pi / 2, np.radians(7)))
     with pytest.raises(AttributeError):
         square.spacing = 3.0
+    # numbers of numpy's come out as Python's: what is written to a file is the same
+    of_numpy = meshdrape.Fabric(np.array([5.0, 3.0]), np.float32(1.5), np.float64(0.25))
+    assert of_numpy == meshdrape.Fabric((5.0, 3.0), 1.5, 0.25)
+    assert {type(v) for v in (*of_numpy.spacing, of_numpy.initial_angle, of_numpy.locking_angle)} == {float}
 
 
 @pytest.mark.parametrize(("keywords", "exception", "words"), [
@@ -81,6 +91,15 @@ def test_fabric_as_given():
     ({"extent": (-1, 10, 10, 10)}, StartError, ["extent", "-1"]),
     ({"extent": (10, 10, 10)}, StartError, ["extent", "four"]),
     ({"extent": (10, 10, 10, NAN)}, StartError, ["extent"]),
+    ({"extent": 10}, StartError, ["extent", "10", "four"]),
+    ({"extent": ("a", "b", "c", "d")}, StartError, ["extent", "'a'", "numbers"]),
+    ({"seed": "here"}, StartError, ["seed", "here", "numbers"]),
+    ({"seed": np.array(["a\n"] * 3)}, StartError, ["seed", "numbers"]),
+    ({"direction": "north"}, StartError, ["direction", "north", "numbers"]),
+    ({"stop_at": "7"}, StartError, ["stop_at", "7", "numbers"]),
+    ({"threads": 0}, StartError, ["threads", "0"]),
+    ({"threads": -1}, StartError, ["threads", "-1"]),
+    ({"threads": 1.5}, StartError, ["threads", "1.5"]),
 ])  # fmt: skip
 def test_start(keywords, exception, words):
     start = {"seed": (0, 0, 0), "direction": (1, 0, 0)} | keywords
