@@ -8,6 +8,7 @@ nobody is left to wait for it.
 from __future__ import annotations
 
 import faulthandler
+import gc
 import os
 import pickle
 import resource
@@ -144,6 +145,8 @@ def _work_and_exit(work: Callable[[], object], answer: int, seconds: float, memo
         _had = _address_space()
         # what a crash means here is known, and Ctrl-C is for the one who waits
         faulthandler.disable()
+        # what was there lives as long as this process: to look for garbage in it would copy all of its pages
+        gc.freeze()
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         for timer in _TIMERS:

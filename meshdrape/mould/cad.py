@@ -44,7 +44,7 @@ def file_mould(
     FileError, SelectionError, MouldError
         See :func:`meshdrape.read_mould`.
     """
-    cadquery_module()
+    _import_for_both()
     read = read_step if file.suffix.lower() in STEP else read_brep
 
     def work() -> CutFaces:
@@ -80,6 +80,7 @@ def script_mould(
         See :func:`meshdrape.read_mould`.
     """
     called = origin or str(path)
+    _import_for_both()
 
     def work(shape: NamedShape) -> CutFaces:
         return _cut(shape, called, faces, chord_tolerance, angle_tolerance)
@@ -115,6 +116,12 @@ def with_script(
                 f"nested too deeply; change it"
             )
         raise FileError(msg) from None
+
+
+def _import_for_both() -> None:
+    """Import what cuts the faces in a process of its own and makes a mould of them in this one: once for both."""
+    cadquery_module()
+    import scipy.sparse.csgraph  # noqa: F401 - takes as long as all else that is done there for a small file
 
 
 def _cut(

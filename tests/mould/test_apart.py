@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -107,6 +109,49 @@ def test_threads_that_were_not_forked_are_not_waited_for():
     begun = time.perf_counter()
     assert apart(cut, 60, GIB) == pytest.approx(here, rel=1e-12)
     assert time.perf_counter() - begun < 50
+
+
+def test_what_was_there_is_not_copied_to_look_for_garbage_in_it():
+    """Its pages are shared until one is written to, and to look an object over is to write to it."""
+    kept = [[number] for number in range(200_000)]
+
+    def copied() -> int:
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+        gc.collect()
+        return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+    assert len(kept) * 2 * 40 > 1000 * resource.getpagesize()
+    assert apart(copied, 10, GIB) < 500
+
+
+IMPORTS = """
+import sys
+from pathlib import Path
+from meshdrape.mould import cad
+
+apart = cad.apart
+
+def watched(work, seconds, memory):
+    def watched_work():
+        before = set(sys.modules)
+        return work(), set(sys.modules) - before
+    global there
+    value, there = apart(watched_work, seconds, memory)
+    return value
+
+cad.apart = watched
+cad.file_mould(Path(sys.argv[1]))
+print(len(there), sorted(name for name in there if name in sys.modules))
+"""
+
+
+def test_nothing_is_imported_there_and_then_again_here():
+    root = str(Path(meshdrape.__file__).parents[1])
+    words = [sys.executable, "-c", IMPORTS, str(SAMPLES / "cube_corner.step")]
+    found = subprocess.run(words, capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": root})
+    n_there, again = found.stdout.split(maxsplit=1)
+    assert int(n_there) > 0
+    assert again.strip() == "[]"
 
 
 def children() -> set[str]:
