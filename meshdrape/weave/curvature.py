@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels import crossings
-from meshdrape.kernels.components import connected_parts
+from meshdrape.kernels.components import join_uncrossed
 from meshdrape.kernels.edges import WARP
 from meshdrape.surface import Surface
 from meshdrape.weave.net import Net
@@ -140,18 +140,16 @@ def _seed_vertex(net: Net) -> int:
 
 def _vertex_cells(surface: Surface, nearest: FloatArray, cell: IntArray, on_fibre: NDArray[np.bool_]) -> IntArray:
     """Cell (i, j) each vertex lies in, (n, 2); -1 where it lies on a fibre or under no cloth."""
-    tail = surface.faces.ravel()
-    head = np.roll(surface.faces, -1, axis=1).ravel()
-    free = ~on_fibre
-    crossed = np.isfinite(nearest)
-    joined = np.flatnonzero(~crossed & free[tail] & free[head])
-    region = connected_parts(tail[joined], head[joined], len(surface.vertices))
-    told = np.flatnonzero(crossed & free[tail])
+    region = np.empty(len(surface.vertices), dtype=np.int64)
+    join_uncrossed(surface.faces, nearest, on_fibre, region)
+    told = np.flatnonzero(np.isfinite(nearest))
+    tail = surface.faces.ravel()[told]
+    told, tail = told[~on_fibre[tail]], tail[~on_fibre[tail]]
     found = np.full((int(region.max()) + 1, 2), -1)
     if len(told):
         # a region and a cell as one number, in the order of both; a cell may lie one before the first
         rows, columns = (cell[told].max(axis=0) + 2).tolist()
-        vote = (region[tail[told]] * rows + cell[told, 0] + 1) * columns + cell[told, 1] + 1
+        vote = (region[tail] * rows + cell[told, 0] + 1) * columns + cell[told, 1] + 1
         votes, count = np.unique(vote, return_counts=True)
         of, voted = np.divmod(votes, rows * columns)
         begins = np.flatnonzero(np.diff(of, prepend=-1))
