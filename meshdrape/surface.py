@@ -357,13 +357,12 @@ def _facets(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArr
 
 
 def _unfold(surface: Surface) -> Unfolding:
-    from meshdrape.kernels.unfold import join, lay_flat
+    from meshdrape.kernels.unfold import unfold
 
     m = len(surface.faces)
     corner, frame = np.empty((m, 3)), np.empty((m, 9))
     line, crossing, plane = np.empty((m, 9)), np.empty((m, 12)), np.empty((m, 24))
-    lay_flat(surface.vertices, surface.faces, corner, frame)
-    join(corner, surface.face_neighbour, line, crossing, plane)
+    unfold(surface.vertices, surface.faces, surface.face_neighbour, corner, frame, line, crossing, plane)
     return Unfolding(
         plane=plane,
         line=line,

@@ -75,7 +75,7 @@ def measure_facets(vertices, faces, normal, area, angle):
         normal[f, 2] = nz / size
 
 
-@kernel
+@kernel(lent=True)
 def chords(normal, neighbour, first, chord):
     """Distance between the tips of the unit normals on both sides of each edge of the faces from `first` on.
 
@@ -91,7 +91,7 @@ def chords(normal, neighbour, first, chord):
             chord[f - first, k] = math.sqrt(away)
 
 
-@kernel
+@kernel(lent=True)
 def star_radii(vertices, faces, area, radius):
     """Fill `radius` (n,): distance from each vertex to the nearest line of the edges round it, mm."""
     radius[:] = math.inf

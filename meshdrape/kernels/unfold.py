@@ -5,8 +5,15 @@ import math
 from meshdrape.kernels.cache import kernel
 
 
-@kernel
-def lay_flat(vertices, faces, corner, frame):
+@kernel(lent=True)
+def unfold(vertices, faces, neighbour, corner, frame, line, crossing, plane):
+    """Lay every face in a frame of its own and find the motions over its sides: fills the tables of `Unfolding`."""
+    _lay_flat(vertices, faces, corner, frame)
+    _join(corner, neighbour, line, crossing, plane)
+
+
+@kernel(lent=True)
+def _lay_flat(vertices, faces, corner, frame):
     """Lay every face in a frame of its own: fills `corner` (m, 3) and `frame` (m, 9) of `Unfolding`."""
     for f in range(len(faces)):
         a, b, c = faces[f]
@@ -44,7 +51,7 @@ def lay_flat(vertices, faces, corner, frame):
         frame[f, 8] = wz
 
 
-@kernel
+@kernel(lent=True)
 def _side(corner, f, k):
     """Tail and head of side k of a face in its frame."""
     x1 = corner[f, 0]
@@ -57,8 +64,8 @@ def _side(corner, f, k):
     return x2, y2, 0.0, 0.0
 
 
-@kernel
-def join(corner, neighbour, line, crossing, plane):
+@kernel(lent=True)
+def _join(corner, neighbour, line, crossing, plane):
     """From faces laid flat to their sides and the motions over them: fills `line`, `crossing`, `plane`."""
     for f in range(len(corner)):
         for k in range(3):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.kernels import crossings
-from meshdrape.kernels.components import connected_parts
+from meshdrape.kernels.components import join_uncrossed
 from meshdrape.kernels.edges import WARP
 from meshdrape.surface import Surface
 from meshdrape.weave.chords import SENSE, Chord, chords, generator_nodes, passed
@@ -198,21 +198,21 @@ def _seed_vertex(net: Net) -> int:
 
 def _vertex_cells(surface: Surface, nearest: FloatArray, cell: IntArray, on_fibre: NDArray[np.bool_]) -> IntArray:
     """Cell (i, j) each vertex lies in, (n, 2); -1 where it lies on a fibre or under no cloth."""
-    tail = surface.faces.ravel()
-    head = np.roll(surface.faces, -1, axis=1).ravel()
-    free = ~on_fibre
-    joined = np.isinf(nearest) & free[tail] & free[head]
-    region = connected_parts(tail[joined], head[joined], len(surface.vertices))
-    told = np.isfinite(nearest) & free[tail]
-    # what most of a region's crossings say: an edge through a node may be first by round-off alone
+    region = np.empty(len(surface.vertices), dtype=np.int64)
+    join_uncrossed(surface.faces, nearest, on_fibre, region)
+    told = np.flatnonzero(np.isfinite(nearest))
+    tail = surface.faces.ravel()[told]
+    told, tail = told[~on_fibre[tail]], tail[~on_fibre[tail]]
+    found = np.full((int(region.max()) + 1, 2), -1)
+    # a region and a cell as one number; what most of a region's crossings say: an edge through a node may be first by
+    # round-off alone
     low = cell.min(axis=0)
     i, j = (cell[told] - low).T
     n_i, n_j = (cell.max(axis=0) - low + 1).tolist()
-    votes, count = np.unique((region[tail[told]] * n_i + i) * n_j + j, return_counts=True)
+    votes, count = np.unique((region[tail] * n_i + i) * n_j + j, return_counts=True)
     of_region = votes // (n_i * n_j)
     order = np.lexsort((-count, of_region))
     first = order[np.unique(of_region[order], return_index=True)[1]]
-    found = np.full((int(region.max()) + 1, 2), -1)
     found[of_region[first], 0] = votes[first] // n_j % n_i + low[0]
     found[of_region[first], 1] = votes[first] % n_j + low[1]
     home = found[region]

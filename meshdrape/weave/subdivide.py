@@ -33,13 +33,22 @@ def subdivided(
         The given triangle each one came from.
     """
     parent = np.arange(len(triangles))
+    # triangles without a long edge, of each round: they stay as they are
+    done: list[tuple[IntArray, IntArray]] = []
+    n_done = 0
     while True:
         tail, head = triangles, np.roll(triangles, -1, axis=1)
         length = np.linalg.norm(vertices[head] - vertices[tail], axis=2)
         marked = length > longest
         count = int(marked.sum())
-        if count == 0 or len(triangles) + count > most:
-            return vertices, triangles, parent
+        if count == 0 or n_done + len(triangles) + count > most:
+            found, parents = zip(*done, (triangles, parent), strict=True)
+            return vertices, np.concatenate(found), np.concatenate(parents)
+        cut = marked.any(axis=1)
+        done.append((triangles[~cut], parent[~cut]))
+        n_done += len(triangles) - int(cut.sum())
+        triangles, parent, length, marked = triangles[cut], parent[cut], length[cut], marked[cut]
+        tail, head = tail[cut], head[cut]
         key = np.minimum(tail, head)[marked] * len(vertices) + np.maximum(tail, head)[marked]
         split, number = np.unique(key, return_inverse=True)
         middle = np.zeros_like(triangles)
@@ -52,22 +61,21 @@ def subdivided(
 def _split(
     triangles: IntArray, parent: IntArray, marked: NDArray[np.bool_], wanted: IntArray, middle: IntArray
 ) -> tuple[IntArray, IntArray]:
+    """The pieces of triangles that have at least one edge marked, which is halved at its vertex in `middle`."""
     rows = np.arange(len(triangles))
-    whole = ~marked.any(axis=1)
-    pieces, parents = [triangles[whole]], [parent[whole]]
+    pieces, parents = [], []
     # turned so that the longest edge runs from a to b; m halves it, n halves b-c and o halves c-a where marked
     order = (wanted[:, None] + np.arange(3)) % 3
     a, b, c = (triangles[rows, order[:, k]] for k in range(3))
     m, n, o = (middle[rows, order[:, k]] for k in range(3))
     has_n, has_o = marked[rows, order[:, 1]], marked[rows, order[:, 2]]
-    cut = ~whole
     for choose, triple in (
-        (cut & ~has_n, (m, b, c)),
-        (cut & has_n, (m, b, n)),
-        (cut & has_n, (m, n, c)),
-        (cut & ~has_o, (m, c, a)),
-        (cut & has_o, (m, c, o)),
-        (cut & has_o, (m, o, a)),
+        (~has_n, (m, b, c)),
+        (has_n, (m, b, n)),
+        (has_n, (m, n, c)),
+        (~has_o, (m, c, a)),
+        (has_o, (m, c, o)),
+        (has_o, (m, o, a)),
     ):
         pieces.append(np.stack(triple, axis=1)[choose])
         parents.append(parent[choose])
