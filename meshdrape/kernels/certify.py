@@ -44,7 +44,7 @@ def _doubt(d, ax, ay, bx, by, dx, dy):
 
 @kernel
 def is_alone(near, doubt, turn, length):
-    """Whether a straight path is sure to have no second route, by what `trace` tells of what stands beside it.
+    """Whether a straight path is sure to have no second route, by what `survey` tells of what stands beside it.
 
     A vertex of angle defect d at a lateral distance y gives at most d length / (8 y) of what `second_route` adds up:
     where they all would not do that stood as near as the nearest, nothing need be followed once more.

@@ -4,7 +4,7 @@ import math
 
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.certify import is_alone, second_route
-from meshdrape.kernels.walk import WALKED, holds, trace, turn_into
+from meshdrape.kernels.walk import WALKED, holds, survey, turn_into
 
 PLACED = 0
 OUTSIDE = 2
@@ -41,11 +41,11 @@ def place(
         Node; directions at A and at B; directions in which the two paths arrive, in the frame of the node's face.
     """
     iterations = 0
-    code, f1, ax, ay, px, py, near_a, doubt_a, turn_a = trace(plane, neighbour, beside, fa, xa, ya, ux, uy, wa)
-    if code != WALKED:
-        return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, px, py, iterations
     while True:
-        code, f2, bx, by, qx, qy, near_b, doubt_b, turn_b = trace(plane, neighbour, beside, fb, xb, yb, vx, vy, wb)
+        code, f1, ax, ay, px, py, near_a, doubt_a, turn_a = survey(plane, neighbour, beside, fa, xa, ya, ux, uy, wa)
+        if code != WALKED:
+            return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, px, py, iterations
+        code, f2, bx, by, qx, qy, near_b, doubt_b, turn_b = survey(plane, neighbour, beside, fb, xb, yb, vx, vy, wb)
         if code != WALKED:
             return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
         x1 = ax + wa * px
@@ -121,14 +121,10 @@ def place(
             else:
                 cb = 1.0
                 sb = 0.0
-        size = math.sqrt(ca * ca + sa * sa)
-        ca /= size
-        sa /= size
-        size = math.sqrt(cb * cb + sb * sb)
-        cb /= size
-        sb /= size
-        ux, uy = ca * ux - sa * uy, sa * ux + ca * uy
-        vx, vy = cb * vx - sb * vy, sb * vx + cb * vy
+        per_a = 1.0 / math.sqrt(ca * ca + sa * sa)
+        per_b = 1.0 / math.sqrt(cb * cb + sb * sb)
+        ux, uy = per_a * (ca * ux - sa * uy), per_a * (sa * ux + ca * uy)
+        vx, vy = per_b * (cb * vx - sb * vy), per_b * (sb * vx + cb * vy)
         if met:
             x1 = cx
             y1 = cy
@@ -137,9 +133,6 @@ def place(
             qx = hx
             qy = hy
             break
-        code, f1, ax, ay, px, py, near_a, doubt_a, turn_a = trace(plane, neighbour, beside, fa, xa, ya, ux, uy, wa)
-        if code != WALKED:
-            return OUTSIDE, f1, xa, ya, ux, uy, vx, vy, px, py, qx, qy, iterations
     if (px * qy - py * qx) * side < FOLD_SINE:
         return FOLDED, f1, x1, y1, ux, uy, vx, vy, px, py, qx, qy, iterations
     if len(detour) > 0 and (

@@ -90,8 +90,6 @@ def sweep(
     i0 = start.origin[0]
     j0 = start.origin[1]
     tolerance2 = tolerance * tolerance
-    per_warp = 1.0 / warp
-    per_weft = 1.0 / weft
     side = float(si * sj)
     stopping = stop_at < math.pi
     angle = initial_angle if side > 0.0 else math.pi - initial_angle
@@ -134,7 +132,6 @@ def sweep(
                     return False
                 status[i, j] = code
                 continue
-            fd = face[ia, jb]
             fa = face[ia, j]
             fb = face[i, jb]
             xa = xy[ia, j, 0]
@@ -142,62 +139,61 @@ def sweep(
             xb = xy[i, jb, 0]
             yb = xy[i, jb, 1]
             at_seed = ia == i0 and jb == j0
-            if fa == fb and fa == fd and not wary[fa] and not at_seed and not every:
+            # directions in which D's edges arrive, the warp's at B and the weft's at A
+            px = 0.0
+            py = 0.0
+            warp_known = known and not at_seed
+            if warp_known:
+                ex = rx
+                ey = ry
+            else:
+                px, py, ex, ey = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
+            qx = 0.0
+            qy = 0.0
+            weft_known = (hx != 0.0 or hy != 0.0) and not at_seed
+            if weft_known:
+                gx = hx
+                gy = hy
+            else:
+                qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
+            if fa == fb and not wary[fa] and not at_seed and not every:
                 # the planar fourth corner of the rhombus, if this triangle holds it
-                ux = (xb - xy[ia, jb, 0]) * per_warp
-                uy = (yb - xy[ia, jb, 1]) * per_warp
-                vx = (xa - xy[ia, jb, 0]) * per_weft
-                vy = (ya - xy[ia, jb, 1]) * per_weft
-                # edges keep their exact length: renew the unit vectors by one Newton step of 1/sqrt
-                scale = 1.5 - 0.5 * (ux * ux + uy * uy)
-                ux *= scale
-                uy *= scale
-                scale = 1.5 - 0.5 * (vx * vx + vy * vy)
-                vx *= scale
-                vy *= scale
-                x = xa + warp * ux
-                y = ya + warp * uy
-                gx = xb + weft * vx - x
-                gy = yb + weft * vy - y
+                x = xa + warp * ex
+                y = ya + warp * ey
+                away_x = xb + weft * gx - x
+                away_y = yb + weft * gy - y
                 if (
-                    gx * gx + gy * gy <= tolerance2
+                    away_x * away_x + away_y * away_y <= tolerance2
                     and holds(plane, fa, x, y)
-                    and (ux * vy - uy * vx) * side > FOLD_SINE
-                    and not (stopping and not least <= ux * vx + uy * vy <= most)
+                    and (ex * gy - ey * gx) * side > FOLD_SINE
+                    and not (stopping and not least <= ex * gx + ey * gy <= most)
                 ):
                     face[i, j] = fa
                     xy[i, j, 0] = x
                     xy[i, j, 1] = y
-                    warp_out[warp_at, j, 0] = ux
-                    warp_out[warp_at, j, 1] = uy
-                    weft_out[i, min(j, jb), 0] = vx
-                    weft_out[i, min(j, jb), 1] = vy
-                    arrived[b, 0] = vx
-                    arrived[b, 1] = vy
+                    warp_out[warp_at, j, 0] = ex
+                    warp_out[warp_at, j, 1] = ey
+                    weft_out[i, min(j, jb), 0] = gx
+                    weft_out[i, min(j, jb), 1] = gy
+                    arrived[b, 0] = gx
+                    arrived[b, 1] = gy
                     if rim[fa] < 0:
                         status[i, j] = PLACED
                     else:
                         status[i, j] = OFF_MOULD if off_mould(mesh, fa, x, y, slack) else PLACED
                     report[0] += 1
                     known = True
-                    rx = ux
-                    ry = uy
+                    rx = ex
+                    ry = ey
                     continue
+            # and those in which they leave D
+            if warp_known:
+                px = warp_out[warp_at, jb, 0]
+                py = warp_out[warp_at, jb, 1]
+            if weft_known:
+                qx = weft_out[ia, min(j, jb), 0]
+                qy = weft_out[ia, min(j, jb), 1]
             # first guess: a rhombus of no curvature, D's edges carried along D-A and D-B
-            px = warp_out[warp_at, jb, 0]
-            py = warp_out[warp_at, jb, 1]
-            qx = weft_out[ia, min(j, jb), 0]
-            qy = weft_out[ia, min(j, jb), 1]
-            if known and px * px + py * py < 2.0 and not at_seed:
-                ex = rx
-                ey = ry
-            else:
-                px, py, ex, ey = edge_ends(mesh, net, start, WARP, ia, jb, si, warp)
-            if hx * hx + hy * hy > 0.5 and qx * qx + qy * qy < 2.0 and not at_seed:
-                gx = hx
-                gy = hy
-            else:
-                qx, qy, gx, gy = edge_ends(mesh, net, start, WEFT, ia, jb, sj, weft)
             if at_seed:
                 half = half_fibre(si, sj)
                 # quadrants counter-clockwise; weft seen from warp is left of it where si and sj agree
@@ -207,13 +203,13 @@ def sweep(
                 # p / q as complex numbers: the turn from the weft edge to the warp edge at D
                 c = px * qx + py * qy
                 s = py * qx - px * qy
-            # unit to the last bit, or lengths would drift from cell to cell
-            size = math.sqrt((c * c + s * s) * (gx * gx + gy * gy))
-            gx /= size
-            gy /= size
-            size = math.sqrt((c * c + s * s) * (ex * ex + ey * ey))
-            ex /= size
-            ey /= size
+            # unit to the last bit, or lengths would drift from cell to cell: one Newton step of 1 / sqrt renews them
+            scale = 1.5 - 0.5 * (c * c + s * s) * (gx * gx + gy * gy)
+            gx *= scale
+            gy *= scale
+            scale = 1.5 - 0.5 * (c * c + s * s) * (ex * ex + ey * ey)
+            ex *= scale
+            ey *= scale
             ux = c * gx - s * gy
             uy = s * gx + c * gy
             vx = c * ex + s * ey

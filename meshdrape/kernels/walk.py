@@ -26,12 +26,12 @@ def walk(plane, neighbour, face, x, y, dx, dy, length):
         Face where the path ends; image of the start and the direction in its frame: the end is
         (x + length dx, y + length dy).
     """
-    code, face, x, y, dx, dy, _, _, _ = trace(plane, neighbour, None, face, x, y, dx, dy, length)
+    code, face, x, y, dx, dy, _, _, _ = survey(plane, neighbour, None, face, x, y, dx, dy, length)
     return code, face, x, y, dx, dy
 
 
 @kernel
-def trace(plane, neighbour, beside, face, x, y, dx, dy, length):
+def survey(plane, neighbour, beside, face, x, y, dx, dy, length):
     """Walk as `walk` does, and tell what there is beside the path.
 
     Instead of stepping from edge to edge the start itself is carried into each new frame, so round-off grows
@@ -105,7 +105,8 @@ def _beyond(plane, face, entered, x, y):
     edge = -1
     worst = 0.0
     for k in range(3):
-        height = plane[face, 8 * k] * (x - plane[face, 8 * k + 2]) + plane[face, 8 * k + 1] * (y - plane[face, 8 * k + 3])
+        at = 8 * k
+        height = plane[face, at] * (x - plane[face, at + 2]) + plane[face, at + 1] * (y - plane[face, at + 3])
         if k != entered and height < worst:
             worst = height
             edge = k
@@ -115,12 +116,10 @@ def _beyond(plane, face, entered, x, y):
 @kernel
 def holds(plane, face, x, y):
     """Whether a place (x, y) of a face's frame lies in the face."""
-    # corner 0 is the origin, corner 1 on the x axis
-    return (
-        y >= 0.0
-        and plane[face, 8] * (x - plane[face, 10]) + plane[face, 9] * y >= 0.0
-        and plane[face, 16] * x + plane[face, 17] * y >= 0.0
-    )
+    # edge 0 lies on the x axis, edge 2 ends in the origin; without branches, at which numba would count references
+    above_1 = plane[face, 8] * (x - plane[face, 10]) + plane[face, 9] * y
+    above_2 = plane[face, 16] * x + plane[face, 17] * y
+    return min(y, min(above_1, above_2)) >= 0.0
 
 
 @kernel
