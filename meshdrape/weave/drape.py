@@ -82,7 +82,10 @@ def drape(
         Points of that generator in their order: each projected on the mould, joined by geodesics, with nodes at equal
         arc length along the curve from the seed on, both ways; past its ends the fibre goes straight on. It keeps its
         own geodesic curvature, so its edges are arcs whose ends lie nearer than one spacing. The other generator
-        crosses it straight at the initial angle, unless it has a path of its own: then at the angle as drawn.
+        crosses it straight at the initial angle, unless it has a path of its own: then at the angle as drawn. The
+        direction it is counted from lies midway between the fibre's first edges on both sides of the seed: the curve's
+        own where it bends evenly; at a kink, half of it; at a kink less than a spacing off, half of what that turns
+        the first edge by.
     stop_at : float, rad
         The cloth ends, cell by cell, before the first that would be sheared by more: STOPPED.
     recrossing : bool

@@ -270,6 +270,21 @@ def test_kink_at_the_seed_and_elsewhere(angle):
     assert net.direction == pytest.approx([1, 0, 0], abs=1e-9)
 
 
+@pytest.mark.parametrize("off", [0.0, 2.5, 7.5, 10.0, 13.0])
+@pytest.mark.parametrize("kink", [0.3, -0.6])
+def test_a_straight_fibre_crosses_a_kinked_one_midway_between_its_first_edges(off, kink):
+    """A kink less than a spacing from the seed turns it by half of what it turns the first edge by; others do not."""
+    beyond = 80.0 * np.array([np.cos(kink), np.sin(kink), 0.0])
+    path = np.array([[-80.0, 0.0, 0.0], [off, 0.0, 0.0], np.array([off, 0.0, 0.0]) + beyond])
+    net = drape(PLATE, 10.0, seed=(0, 0, 0), warp_path=path)
+    rest = max(10.0 - off, 0.0)
+    first_edge = np.arctan2(rest * np.sin(kink), 10.0 - rest + rest * np.cos(kink))
+    weft = np.pi / 2 + 0.5 * first_edge
+    expected = 10.0 * np.array([np.cos(weft), np.sin(weft), 0.0])
+    for step in (1, -1, 4, -4):
+        assert nodes_at(net, 0, step) == pytest.approx(step * expected, abs=1e-9)
+
+
 def test_across_a_crease_and_bent_on_it():
     """Over a cube's edge: straight through a point of it, then bent there; the net unfolds to the plane's."""
     mesh = cube_corner(300, 3)
