@@ -52,11 +52,14 @@ def corner_excess(
     # the weft side as seen from the other bank of the cut
     first, end = vertex * (1 - closed), vertex + (up * np.exp(1j * angle) - vertex) * closed
     between = end - along
-    # no cell has both of its far sides from one place; round-off of one must not divide by nothing
-    distance = np.maximum(np.abs(between), np.finfo(float).tiny)
-    foot = (distance**2 + right**2 - top**2) / (2 * distance)
+    distance = np.abs(between)
+    # a cell folded flat has both of its far sides from one place
+    folded = distance == 0
+    apart = np.where(folded, 1.0, distance)
+    ahead = np.where(folded, 1.0, between / apart)
+    foot = np.where(folded, right, (distance**2 + right**2 - top**2) / (2 * apart))
     height = np.sqrt(np.maximum(right**2 - foot**2, 0.0))
-    last = along + between / distance * (foot - 1j * height)
+    last = along + ahead * (foot - 1j * height)
     at_warp_end = np.angle(-along / (last - along) * np.exp(1j * (angle - np.pi)))
     at_weft_end = np.angle((last - end) / (first - end) * np.exp(1j * (angle - np.pi)))
     return np.asarray(at_warp_end), np.asarray(at_weft_end)
