@@ -16,6 +16,9 @@ FloatArray = NDArray[np.float64]
 
 # A vertex this near to the cell's first corner, in sides, lies on it, and in no direction from it.
 AT_CORNER = 1e-7
+# Below this the cosine of a direction from the first corner is that along a side: its angle would be the root of
+# round-off.
+ON_SIDE = 1e-12
 
 
 class Sides(NamedTuple):
@@ -79,7 +82,7 @@ def laid_flat(sides: Sides, to_first: FloatArray, to_warp: FloatArray, to_weft: 
 
     def between(side: FloatArray, far: FloatArray) -> FloatArray:
         cosine = (near**2 + side**2 - far**2) / (2 * near * side)
-        found = np.arccos(np.clip(cosine, -1.0, 1.0))
+        found = np.arccos(np.where(np.abs(cosine) > 1 - ON_SIDE, np.sign(cosine), cosine))
         return np.asarray(np.where(near > to_first, np.pi / 4, found))
 
     turn = between(warp, to_warp)
