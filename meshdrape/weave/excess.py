@@ -16,6 +16,9 @@ FloatArray = NDArray[np.float64]
 
 # A vertex this near to the cell's first corner, in sides, lies on it, and in no direction from it.
 AT_CORNER = 1e-7
+# Below this the cosine of a direction from the first corner is that along a side: its angle would be the root of
+# round-off.
+ON_SIDE = 1e-12
 
 
 class Sides(NamedTuple):
@@ -52,11 +55,14 @@ def corner_excess(
     # the weft side as seen from the other bank of the cut
     first, end = vertex * (1 - closed), vertex + (up * np.exp(1j * angle) - vertex) * closed
     between = end - along
-    # no cell has both of its far sides from one place; round-off of one must not divide by nothing
-    distance = np.maximum(np.abs(between), np.finfo(float).tiny)
-    foot = (distance**2 + right**2 - top**2) / (2 * distance)
+    distance = np.abs(between)
+    # a cell folded flat has both of its far sides from one place
+    folded = distance == 0
+    apart = np.where(folded, 1.0, distance)
+    ahead = np.where(folded, 1.0, between / apart)
+    foot = np.where(folded, right, (distance**2 + right**2 - top**2) / (2 * apart))
     height = np.sqrt(np.maximum(right**2 - foot**2, 0.0))
-    last = along + between / distance * (foot - 1j * height)
+    last = along + ahead * (foot - 1j * height)
     at_warp_end = np.angle(-along / (last - along) * np.exp(1j * (angle - np.pi)))
     at_weft_end = np.angle((last - end) / (first - end) * np.exp(1j * (angle - np.pi)))
     return np.asarray(at_warp_end), np.asarray(at_weft_end)
@@ -76,7 +82,7 @@ def laid_flat(sides: Sides, to_first: FloatArray, to_warp: FloatArray, to_weft: 
 
     def between(side: FloatArray, far: FloatArray) -> FloatArray:
         cosine = (near**2 + side**2 - far**2) / (2 * near * side)
-        found = np.arccos(np.clip(cosine, -1.0, 1.0))
+        found = np.arccos(np.where(np.abs(cosine) > 1 - ON_SIDE, np.sign(cosine), cosine))
         return np.asarray(np.where(near > to_first, np.pi / 4, found))
 
     turn = between(warp, to_warp)

@@ -128,8 +128,8 @@ def test_a_mesh_cannot_be_refined(capfd, tmp_path):
 @pytest.mark.parametrize(
     "name",
     [
-        "blade_root", "c_spar", "cone", "cube_corner", "cylinder", "hemisphere", "hypar", "joggle", "krogh_double_curved",
-        "l_corner", "leading_edge", "pyramid", "saddle", "wing_spar",
+        "blade_root", "c_spar", "cone", "cube_corner", "cylinder", "hemisphere", "hypar", "joggle",
+        "krogh_double_curved", "l_corner", "leading_edge", "pyramid", "saddle", "wing_spar",
     ],
 )  # fmt: skip
 def test_noise_of_the_samples(name):
