@@ -246,3 +246,20 @@ class Patch:
             self.surface.NbVIntervals(GeomAbs_Shape.GeomAbs_C2),
         )
         return int(min(max(FEWEST_LOOKS, *spans), 4 * FEWEST_LOOKS))
+
+
+def metric_length(metric: Floats, step: Floats) -> Floats:
+    """Length of steps in (u, v), (k, 2), in the metric of nodes, (k, 3)."""
+    du, dv = step.T
+    return np.asarray(
+        np.sqrt(np.maximum(metric[:, 0] * du**2 + 2 * metric[:, 1] * du * dv + metric[:, 2] * dv**2, 0.0))
+    )
+
+
+def in_parameters(tangent: Floats, vector: Floats) -> Floats:
+    """Steps in (u, v) whose images are nearest to vectors in space, (k, 2)."""
+    (su, sv), x = np.moveaxis(tangent, 1, 0), vector
+    e, f, g = (np.einsum("ki,ki->k", p, q) for p, q in ((su, su), (su, sv), (sv, sv)))
+    p, q = np.einsum("ki,ki->k", x, su), np.einsum("ki,ki->k", x, sv)
+    area2 = np.maximum(e * g - f * f, np.finfo(float).tiny)
+    return np.asarray(np.column_stack([g * p - f * q, e * q - f * p]) / area2[:, None])

@@ -8,12 +8,10 @@ from typing import Final
 import numpy as np
 
 from meshdrape.errors import MouldError
-from meshdrape.mould.edges import SHORTEST
+from meshdrape.mould.edges import MOST_DRIFT, SHORTEST
 from meshdrape.mould.facets import Facets
-from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances
+from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances, in_parameters, metric_length
 
-# The image of an edge on its face may lie beside its chord by this much in the metric.
-MOST_DRIFT: Final = 0.1
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
 SIZE_CLASS: Final = 1.25
 MOST_TRIANGLES: Final = 2_000_000
@@ -96,34 +94,18 @@ def _plain_size(nodes: Nodes, a: Ints, b: Ints, chord_tolerance: float) -> Float
     """Size of edges a-b on doubly curved faces: by the metric, the gap to the face and the drift on it."""
     metric = (nodes.metric[a] + nodes.metric[b]) / 2
     step = nodes.uv[b] - nodes.uv[a]
-    length = _length(metric, step)
+    length = metric_length(metric, step)
     # the middle of the cubic through both ends with their tangents, from the middle of the chord
     bulge = np.einsum("kpi,kp->ki", nodes.tangent[a] - nodes.tangent[b], step) / 8
     tangent, normal = (nodes.tangent[a] + nodes.tangent[b]) / 2, (nodes.normal[a] + nodes.normal[b]) / 2
     gap = np.abs(np.einsum("ki,ki->k", bulge, normal))
-    drift = _length(metric, _in_parameters(tangent, bulge))
+    drift = metric_length(metric, in_parameters(tangent, bulge))
     return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / MOST_DRIFT))))
 
 
 def _size_from_pole(nodes: Nodes, pole: Ints, other: Ints, chord_tolerance: float) -> Floats:
     """Size of edges from a pole, where parameters say nothing, by the chord and the forms at the other end."""
     chord = nodes.position[pole] - nodes.position[other]
-    length = _length(nodes.metric[other], _in_parameters(nodes.tangent[other], chord))
+    length = metric_length(nodes.metric[other], in_parameters(nodes.tangent[other], chord))
     gap = np.abs(np.einsum("ki,ki->k", chord, nodes.normal[other])) / 4
     return np.asarray(np.maximum(length, np.sqrt(gap / chord_tolerance)))
-
-
-def _length(metric: Floats, step: Floats) -> Floats:
-    du, dv = step.T
-    return np.asarray(
-        np.sqrt(np.maximum(metric[:, 0] * du**2 + 2 * metric[:, 1] * du * dv + metric[:, 2] * dv**2, 0.0))
-    )
-
-
-def _in_parameters(tangent: Floats, vector: Floats) -> Floats:
-    """Steps in (u, v) whose images are nearest to vectors in space, (k, 2)."""
-    (su, sv), x = np.moveaxis(tangent, 1, 0), vector
-    e, f, g = (np.einsum("ki,ki->k", p, q) for p, q in ((su, su), (su, sv), (sv, sv)))
-    p, q = np.einsum("ki,ki->k", x, su), np.einsum("ki,ki->k", x, sv)
-    area2 = np.maximum(e * g - f * f, np.finfo(float).tiny)
-    return np.asarray(np.column_stack([g * p - f * q, e * q - f * p]) / area2[:, None])
