@@ -18,9 +18,9 @@ SIZE_CLASS: Final = 1.25
 # mm; no shorter edge of a facet is split: at a kink that the face does not tell of this would be for ever.
 SHORTEST: Final = 1e-5
 MOST_TRIANGLES: Final = 2_000_000
-# The largest size falls from hundreds to one in some thirty rounds; where it has not fallen for so many, it never will,
-# for edges on the outline are not split.
-ROUNDS: Final = 100
+# The largest size falls from hundreds to one in some twenty-five rounds, and in every second at the least; where it has
+# not fallen for so many, it never will, for edges on the outline are not split. Each round takes longer than the last.
+ROUNDS: Final = 40
 
 Evaluate = Callable[[Ints, Floats], Nodes]
 
