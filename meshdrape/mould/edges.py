@@ -9,7 +9,7 @@ import numpy as np
 
 from meshdrape.errors import MouldError
 from meshdrape.mould.apart import step
-from meshdrape.mould.check import FARTHEST
+from meshdrape.mould.check import FARTHEST, at
 from meshdrape.mould.patch import Bools, Floats, Nodes, Patch, Tolerances, in_parameters, metric_length
 
 if TYPE_CHECKING:
@@ -22,11 +22,13 @@ MOST_PROBES: Final = 33
 FEWEST_PROBES: Final = 5
 # Probes keep this share of a segment away from its ends, where the curve may have a kink.
 ASIDE: Final = 1 / 64
-MOST_NODES: Final = 50_000
+# A strip between two such edges has a million triangles, half of the most there may be.
+MOST_NODES: Final = 500_000
 # The image of an edge on a face may lie beside its chord by this much in the metric.
 MOST_DRIFT: Final = 0.1
-# mm; what is smaller is not divided: a kink that the curve does not tell of, or a pole, would be for ever.
-SHORTEST: Final = 1e-5
+# mm; what is smaller is a point and not divided. The finest that Open CASCADE keeps apart from a point, the tip of a
+# cone of 1e-7, is divided as finely as the rim across from it, or no facets between the two follow the face.
+SHORTEST: Final = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,26 +77,31 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
     MouldError
         The tolerances ask for more nodes than any mould needs.
     """
-    step()
     curve, segments = _smooth_pieces(passages[0].edge)
     turn = tolerances.angle if _is_crease(passages, segments) else tolerances.gauss_angle
     done = [segments[:, 0], segments[-1:, 1]]
     n_probes = MOST_PROBES
     while len(segments):
+        step()
         probes = np.linspace(ASIDE, 1 - ASIDE, n_probes)
-        at = segments[:, :1] + np.diff(segments, axis=1) * probes
-        split = _leaves_chord(curve, segments, at, tolerances.chord, turn / 2)
+        probed = segments[:, :1] + np.diff(segments, axis=1) * probes
+        pieces = _pieces(curve, segments, probed, tolerances.chord, turn / 2)
+        if pieces.sum() + sum(map(len, done)) > MOST_NODES:
+            begin = at(curve.Value(curve.FirstParameter()).Coord())
+            msg = (
+                f"the edge that begins at {begin} takes more than {MOST_NODES:,} nodes at these "
+                f"tolerances; make them larger, or mend it in CAD"
+            )
+            raise MouldError(msg)
+        split = pieces > 1.0
         for passage in passages:
             rest = np.flatnonzero(~split)
-            split[rest] = _is_coarse(passage, at[rest])
+            split[rest] = _is_coarse(passage, probed[rest])
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])
         segments = np.stack([np.hstack([segments[:, :1], middle]), np.hstack([middle, segments[:, 1:]])]).reshape(-1, 2)
         n_probes = max(FEWEST_PROBES, n_probes // 2)
-        if len(segments) > MOST_NODES:
-            msg = f"an edge takes more than {MOST_NODES} nodes at these tolerances; make them larger"
-            raise MouldError(msg)
     return np.sort(np.concatenate(done))
 
 
@@ -128,8 +135,8 @@ def _is_crease(passages: list[Passage], segments: Floats) -> bool:
     return bool((np.linalg.norm(one - other, axis=1) > CREASE).any())
 
 
-def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float) -> Bools:
-    """Whether the curve leaves the chord of a segment by more than the tolerance or the angle, (s,)."""
+def _pieces(curve: Any, segments: Floats, at: Floats, chord_tolerance: float, direction: float) -> Floats:
+    """Into how many pieces a segment has to be cut to keep to the chord tolerance and the angle, about, (s,)."""
     from OCP.gp import gp_Pnt, gp_Vec
 
     point, derivative = gp_Pnt(), gp_Vec()
@@ -146,10 +153,12 @@ def _leaves_chord(curve: Any, segments: Floats, at: Floats, chord_tolerance: flo
     along = chord / np.maximum(np.linalg.norm(chord, axis=1), np.finfo(float).tiny)[:, None]
     offset, tangent = values[:, 1:-1, 0] - start[:, None], values[:, 1:-1, 1]
     aside = offset - np.einsum("spi,si->sp", offset, along)[..., None] * along[:, None]
-    speed = np.linalg.norm(tangent, axis=2)
-    turned = np.einsum("spi,si->sp", tangent, along) < np.cos(direction) * speed
-    leaves = ((np.linalg.norm(aside, axis=2) > chord_tolerance) | turned).any(axis=1)
-    return np.asarray(leaves & _has_size(values[..., 0, :]))
+    by_chord = np.sqrt(np.linalg.norm(aside, axis=2) / chord_tolerance)
+    cosine = np.einsum("spi,si->sp", tangent, along)
+    sine = np.linalg.norm(tangent - cosine[..., None] * along[:, None], axis=2)
+    by_angle = np.arctan2(sine, cosine) / direction
+    pieces = np.maximum(np.fmax(by_chord, by_angle).max(axis=1), 1.0)  # of a derivative beyond all measure nothing
+    return np.where(_has_size(values[..., 0, :]), pieces, 1.0)
 
 
 def _is_coarse(passage: Passage, at: Floats) -> Bools:

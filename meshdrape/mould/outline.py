@@ -17,6 +17,9 @@ from meshdrape.mould.patch import Floats, Ints, Nodes, Patch, Tolerances
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Edge
 
+# Nodes of an outline of more than so many are moved aside while it is cut, by this share of the segments beside them.
+MANY: Final = 3000
+JOGGLE: Final = 1e-5
 # Segments of an edge that is one point.
 POLE_SEGMENTS: Final = 8
 # rad; nodes that turn the outline by less lie on a straight side of it.
@@ -54,7 +57,8 @@ class Outline:
         rings = np.split(np.arange(len(uv)), self.ring_end[:-1])
         bent = np.concatenate([_bent_inwards(uv[ring]) for ring in rings])
         doubled = abs(sum(_shoelace(uv[ring]) for ring in rings))
-        for cut in (_delaunay_cut, _ear_cut):
+        cuts = (_joggled_cut, _delaunay_cut, _ear_cut) if len(uv) > MANY else (_delaunay_cut, _ear_cut)
+        for cut in cuts:
             triangles = cut(bent, self.nodes.metric.mean(axis=0), self.ring_end)
             area = _doubled_area(uv[triangles])
             whole = len(triangles) == len(uv) + 2 * len(rings) - 4 and bool(np.isclose(area.sum(), doubled, rtol=1e-6))
@@ -177,15 +181,18 @@ def _bent_inwards(ring: Floats) -> Floats:
     turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
     corners = np.flatnonzero(np.abs(turn) > STRAIGHT)
     bent = ring.copy()
-    for corner, following in zip(corners, np.roll(corners, -1), strict=True):
-        side = (corner + np.arange(1, (following - corner - 1) % len(ring) + 1)) % len(ring)
-        chord = ring[following] - ring[corner]
+    ends = np.roll(corners, -1)
+    between = (ends - corners - 1) % len(ring)
+    straight = between > 0
+    for corner, end, count in zip(corners[straight], ends[straight], between[straight], strict=True):
+        side = (corner + np.arange(1, count + 1)) % len(ring)
+        chord = ring[end] - ring[corner]
         share = (ring[side] - ring[corner]) @ chord / (chord @ chord)
         bent[side] += BEND * (share * (1 - share))[:, None] * np.array([-chord[1], chord[0]])
     return bent
 
 
-def _delaunay_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
+def _delaunay_cut(uv: Floats, metric: Floats, ring_end: Ints, joggle: float = 0.0) -> Ints:
     """Delaunay triangles inside an outline, in one metric for all of it; those of a part if they cross its rings.
 
     Next to what is wanted in the end where the metric hardly varies: ears of a long strip make a fan that would
@@ -197,6 +204,13 @@ def _delaunay_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
 
     uu, mixed, vv = metric
     stretched = uv @ np.linalg.cholesky(np.array([[uu, mixed], [mixed, vv]]) + 1e-12 * (uu + vv) * np.eye(2))
+    n = len(uv)
+    following = np.arange(1, n + 1)
+    following[ring_end - 1] = np.concatenate([[0], ring_end[:-1]])
+    after, before = np.linalg.norm(stretched[following] - stretched, axis=1), np.empty(n)
+    before[following] = after
+    aside = joggle * np.minimum(before, after)
+    stretched += aside[:, None] * np.random.default_rng(0).uniform(-1.0, 1.0, (n, 2))
     try:
         found = Delaunay(stretched)
     except QhullError:
@@ -204,9 +218,6 @@ def _delaunay_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
     triangles, beyond = found.simplices.astype(np.int64), found.neighbors  # neighbour k lies opposite corner k
     clockwise = _doubled_area(uv[triangles]) < 0
     triangles[clockwise], beyond[clockwise] = triangles[clockwise][:, ::-1], beyond[clockwise][:, ::-1]
-    n = len(uv)
-    following = np.arange(1, n + 1)
-    following[ring_end - 1] = np.concatenate([[0], ring_end[:-1]])
     tail, head = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
     inside, outside = following[tail] == head, following[head] == tail
     linked = (beyond >= 0) & ~inside & ~outside
@@ -215,6 +226,15 @@ def _delaunay_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
     wanted = np.zeros(part.max() + 1, dtype=bool)
     wanted[part[inside.any(axis=1)]] = True
     return np.ascontiguousarray(triangles[wanted[part]])
+
+
+def _joggled_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:
+    """The same of nodes moved aside a little.
+
+    Nodes that face each other across a strip, or along an arc, lie on common circles. Qhull makes one polygon of
+    those, which takes time with the square of their number.
+    """
+    return _delaunay_cut(uv, metric, ring_end, JOGGLE)
 
 
 def _ear_cut(uv: Floats, metric: Floats, ring_end: Ints) -> Ints:

@@ -8,16 +8,18 @@ from typing import Final
 import numpy as np
 
 from meshdrape.errors import MouldError
-from meshdrape.mould.edges import MOST_DRIFT, SHORTEST
+from meshdrape.mould.edges import MOST_DRIFT
 from meshdrape.mould.facets import Facets
 from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances, in_parameters, metric_length
 
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
 SIZE_CLASS: Final = 1.25
+# mm; no shorter edge of a facet is split: at a kink that the face does not tell of this would be for ever.
+SHORTEST: Final = 1e-5
 MOST_TRIANGLES: Final = 2_000_000
-# The largest size falls from hundreds to one in some thirty rounds; where it has not fallen for so many, it never will,
-# for edges on the outline are not split.
-ROUNDS: Final = 100
+# The largest size falls from hundreds to one in some twenty-five rounds, and in every second at the least; where it has
+# not fallen for so many, it never will, for edges on the outline are not split. Each round takes longer than the last.
+ROUNDS: Final = 40
 
 Evaluate = Callable[[Ints, Floats], Nodes]
 

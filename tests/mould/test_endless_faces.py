@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import resource
 from pathlib import Path
 
 import cadquery as cq
@@ -35,6 +36,24 @@ def test_a_rim_that_is_no_curve_any_more(tmp_path):
     path.write_text(text[: circles[1].start()] + "CIRCLE('',#1,20.)" + text[circles[1].end() :])
     with pytest.raises(MouldError, match=r"cylinder\.step: no facets follow face 1, .*mend it in CAD"):
         meshdrape.read_mould(path, **COARSE)
+
+
+def seconds_of_children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def test_a_surface_that_one_point_tears_off_its_outline_is_given_up_soon(tmp_path):
+    """A control point of the face is one from elsewhere: triangles double every few rounds, and follow nothing."""
+    text = (Path(__file__).resolve().parents[2] / "samples/blade_root.step").read_text()
+    row = "(#122,#123,#124,#125)"
+    assert text.count(row) == 1
+    path = tmp_path / "blade.step"
+    path.write_text(text.replace(row, row.replace("#123", "#57")))
+    begun = seconds_of_children()
+    with pytest.raises(MouldError, match=r"blade\.step: no facets follow face 1, .*mend it in CAD"):
+        meshdrape.read_mould(path, **COARSE)
+    assert seconds_of_children() - begun < 8.0
 
 
 def angled_wall(corner: int) -> cq.Shape:
