@@ -32,7 +32,8 @@ def kernel(function=None, *, inline="never", nogil=False, lent=False):
     ----------
     lent : bool
         Arrays are only lent to it: it makes none and does not count who holds those it is given. Where a small function
-        is called with all tables of a net, numba's counting takes several times as long as what the function does.
+        is called with all tables of a net, numba's counting (its option `_nrt`) takes several times as long as what the
+        function does. One that makes an array all the same does not compile.
     """
     if function is None:
         return lambda function: kernel(function, inline=inline, nogil=nogil, lent=lent)

