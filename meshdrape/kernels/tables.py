@@ -21,8 +21,8 @@ class Unfolding(NamedTuple):
     """
 
     plane: FloatArray
-    """(m, 24) what a walk reads, a cache line an edge: for edge k, from 8 k on, the unit inward normal (2), the tail (2),
-    and `crossing` (4)."""
+    """(m, 24) what a walk reads, a cache line an edge: for edge k, from 8 k on, its unit inward normal, its tail, and
+    its `crossing`."""
     line: FloatArray
     """(m, 9) three edges as (nx, ny, o): unit inward normal and offset; nx x + ny y - o is the height above it."""
     crossing: FloatArray

@@ -105,7 +105,8 @@ def _beyond(plane, face, entered, x, y):
     edge = -1
     worst = 0.0
     for k in range(3):
-        height = plane[face, 8 * k] * (x - plane[face, 8 * k + 2]) + plane[face, 8 * k + 1] * (y - plane[face, 8 * k + 3])
+        at = 8 * k
+        height = plane[face, at] * (x - plane[face, at + 2]) + plane[face, at + 1] * (y - plane[face, at + 3])
         if k != entered and height < worst:
             worst = height
             edge = k
