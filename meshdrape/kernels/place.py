@@ -103,6 +103,7 @@ def place(
             cb = hx * qx + hy * qy
             sb = hy * qx - hx * qy
             if f1 == f2 and ca > 0.0 and cb > 0.0:
+                # a turn sweeps over nothing that stands farther aside than it carries the end
                 near_a -= wa * abs(sa)
                 near_b -= wb * abs(sb)
                 met = near_a > 0.0 and near_b > 0.0 and holds(plane, f1, cx, cy)

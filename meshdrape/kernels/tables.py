@@ -21,8 +21,8 @@ class Unfolding(NamedTuple):
     """
 
     plane: FloatArray
-    """(m, 24) what a walk reads, a cache line an edge: from 8 k on for edge k its unit inward normal (2), tail (2) and
-    its `crossing` (4)."""
+    """(m, 24) what a walk reads, a cache line an edge: for edge k, from 8 k on, its unit inward normal, its tail, and
+    its `crossing`."""
     line: FloatArray
     """(m, 9) three edges as (nx, ny, o): unit inward normal and offset; nx x + ny y - o is the height above it."""
     crossing: FloatArray

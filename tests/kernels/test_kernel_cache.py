@@ -63,6 +63,22 @@ def test_a_kernel_is_compiled_anew_when_one_it_calls_changes(kernels, tmp_path, 
     assert len(left) == (2 if told else 1)  # beside the sources nothing is left of kernels that are no more
 
 
+def test_a_kernel_is_compiled_once_for_all_integers(kernels):
+    """A constant, a narrow integer and a variable are one form to it."""
+    (kernels / "outer.py").write_text(
+        OUTER.replace("inner(x)", "(inner(x) + inner(4) + inner(np.int32(x)))").replace(
+            "from", "import numpy as np\nfrom", 1
+        )
+    )
+    program = "from meshdrape.kernels.outer import inner, outer; print(outer(1), len(inner.signatures))"
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    environment["PYTHONPATH"] = str(kernels.parents[1])
+    run = subprocess.run(
+        [sys.executable, "-P", "-c", program], env=environment, check=True, capture_output=True, text=True
+    )
+    assert run.stdout.split() == ["90", "1"]
+
+
 def test_where_the_package_cannot_be_written_the_user_keeps_the_kernels(kernels, tmp_path):
     (kernels / "__pycache__").write_text("a file where numba would make a folder")
     settings = {"XDG_CACHE_HOME": str(tmp_path / "caches")}

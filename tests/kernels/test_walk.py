@@ -1,5 +1,7 @@
 """Straight lines across unfolded triangles."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 from moulds import bumpy, cube, cylinder, icosphere, plate, sliver_plate, step_corner
 from paths import LEFT_SURFACE, WALKED, Place, in_face, place_at, turn_into, walk
 
-from meshdrape.kernels.walk import off_mould
+from meshdrape.kernels.walk import off_mould, survey
 from meshdrape.surface import Surface, SurfacePoint
 from meshdrape.weave.collar import extended
 
@@ -166,3 +168,34 @@ def test_along_edges_and_through_vertices_it_ends_in_the_face_that_holds_the_end
             height = line[:, 0] * there.end.x + line[:, 1] * there.end.y - line[:, 2]
             assert height.min() > -1e-9, (face, k)
     assert tried > 100
+
+
+def test_what_stands_beside_a_walk():
+    """On a plane: the corner nearest to the line of all faces it crosses, and the sum over them and over the edges."""
+    surface = SURFACES["plate"]
+    mesh, rng = surface.unfolding, np.random.default_rng(4)
+    beside = rng.uniform(size=(len(surface.faces), 6)).astype(np.float32)
+    for _ in range(50):
+        (ax, ay), angle = rng.uniform(-35, 35, 2), rng.uniform(0, 2 * np.pi)
+        length = rng.uniform(5, 28)
+        place = place_at(surface, (ax, ay, 0.0))
+        direction = in_face(surface, place.face, (np.cos(angle), np.sin(angle), 0.0))
+        code, *_, near, doubt, turn = survey(mesh.plane, mesh.neighbour, beside, *place, *direction, length)
+        assert code == WALKED
+        along = np.linspace(0, length, 4001)[:, None] * [np.cos(angle), np.sin(angle)] + [ax, ay]
+        corners = surface.vertices[surface.faces][:, :, :2]
+        tails, heads = corners, np.roll(corners, -1, axis=1)
+        edge, out = heads - tails, along[:, None, None] - tails
+        left = edge[..., 0] * out[..., 1] - edge[..., 1] * out[..., 0]
+        crossed = []
+        for face in np.argmax((left >= 0).all(axis=2), axis=1).tolist():
+            if face not in crossed:
+                crossed.append(face)
+        offset = corners[crossed] - [ax, ay]
+        aside = np.abs(np.cos(angle) * offset[..., 1] - np.sin(angle) * offset[..., 0])
+        assert near == pytest.approx(aside.min(), abs=1e-12)
+        total, turned = beside[crossed[0], ::2].sum(), 0.0
+        for before, after in pairwise(crossed):
+            k = [code // 3 for code in surface.face_neighbour[after]].index(before)
+            total, turned = total + beside[after, 2 * k], turned + beside[after, 2 * k + 1]
+        assert (doubt, turn) == pytest.approx((total, turned), rel=1e-6)

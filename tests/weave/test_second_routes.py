@@ -7,9 +7,9 @@ from moulds import Mesh, bumpy, cube, grid, icosphere, tube
 import meshdrape
 from meshdrape.geodesic import surface_distance
 from meshdrape.geodesic.detours import detours
-from meshdrape.kernels.certify import second_route
+from meshdrape.kernels.certify import is_alone, second_route
 from meshdrape.kernels.tables import KEPT_OUT, Detours
-from meshdrape.kernels.walk import WALKED, walk
+from meshdrape.kernels.walk import WALKED, survey, walk
 from meshdrape.surface import Surface, SurfacePoint
 
 MOULDS = {
@@ -120,6 +120,36 @@ def test_suspicion_beside_crowds(make, point, length):
     seen = [past(surface, np.array(point, dtype=float), length, rng, 0.2) for _ in range(100)]
     assert (False, True) not in seen
     assert (True, True) in seen
+
+
+@pytest.mark.parametrize(
+    ("make", "length", "share"),
+    [
+        (lambda: icosphere(4, 100.0), 5.0, 0.95),
+        (lambda: icosphere(4, 100.0), 60.0, 0.01),
+        (lambda: bumpy(7), 25.0, 0.0),
+        (lambda: blunt_cone(3.0), 25.0, 0.0),
+        (lambda: cube(200.0, 12), 8.0, 0.8),
+        (lambda: tube(60.0), 150.0, 0.0),
+    ],
+)
+def test_what_a_walk_tells_clears_no_path_that_is_suspect(make, length, share):
+    """Taken as if all that stands beside a path were as near as the nearest, it spares most of them the certificate."""
+    surface = make().mould().surface
+    mesh, table = surface.unfolding, detours(surface, length)
+    rng = np.random.default_rng(2)
+    seen = []
+    for _ in range(2000):
+        face = int(rng.integers(len(surface.faces)))
+        start = SurfacePoint(face, rng.dirichlet([1, 1, 1])).in_frame(surface)
+        angle = rng.uniform(0, 2 * np.pi)
+        path = (face, *start, np.cos(angle), np.sin(angle), length)
+        code, *_, near, doubt, turn = survey(mesh.plane, mesh.neighbour, table.beside, *path)
+        if code == WALKED:
+            suspected = second_route(mesh.plane, mesh.neighbour, table.corner, table.normal, *path)
+            seen.append((bool(is_alone(near, doubt, turn, length)), bool(suspected)))
+    assert (True, True) not in seen
+    assert np.mean([alone for alone, _ in seen]) >= share
 
 
 def test_suspicion_is_local():
