@@ -7,7 +7,6 @@ import numpy as np
 from meshdrape.geodesic.detours import detours
 from meshdrape.kernels.complete import complete, joins_all
 from meshdrape.kernels.tables import Lattice
-from meshdrape.kernels.walk import off_mould
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
@@ -51,11 +50,9 @@ def fill_bays(surface: Surface, fabric: Fabric, lattice: Lattice, judge: Judge) 
                         *spacing, fabric.initial_angle, judge.stop_at, tolerance, slack, report,
                     ):  # fmt: skip
                         i, j, why = (int(v) for v in report[2:])
-                        # what fails beside the mould, where sheets of the extension part, is not lost to the cloth
-                        off = off_mould(mesh, lattice.face[i, j], *lattice.xy[i, j], slack)
                         judge.decide((i, j), why, sense)
                         status = lattice.status[i, j]
-                        if status == NodeStatus.OUTSIDE or (off and status == NodeStatus.FOLDED):
+                        if status == NodeStatus.OUTSIDE:
                             # not to be tried again from there
                             lattice.status[i, j] = NodeStatus.NOT_CONVERGED
                             refused.append((i, j))

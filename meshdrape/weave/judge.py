@@ -21,7 +21,7 @@ from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
 from meshdrape.weave.generators import border_slack
 from meshdrape.weave.scan import scan
-from meshdrape.weave.settle import Edge, NodeSearch, Settled, shortest
+from meshdrape.weave.settle import Edge, NodeSearch, Settled, shortest, step_from
 from meshdrape.weave.status import NodeStatus
 
 FloatArray = NDArray[np.float64]
@@ -121,10 +121,7 @@ class Judge:
         if found is None:
             search = self._search(i, j, sense)
             found = search.run(guess, side)
-        parents = (lattice.status[i - sense[0], j], lattice.status[i, j - sense[1]])
-        # the node's own guess is the end of an edge: that beside the mould, where sheets of the extension part, and a
-        # parent there too
-        beyond = parents.count(NodeStatus.OFF_MOULD) + off_mould(self._surface.unfolding, *guess, self._slack) > 1
+        beyond = self._beside_the_mould(i, j, sense)
         if found is None and not beyond:
             found = scan(search, self._place((i - sense[0], j - sense[1])), guess, side)
         if found is not None and self._round_the_border(found):
@@ -135,17 +132,33 @@ class Judge:
         else:
             self._write(i, j, sense, found)
 
-    def _round_the_border(self, found: Settled) -> bool:
-        """Whether a node lies beside the mould, across a corner of its border from a parent.
+    def _beside_the_mould(self, i: int, j: int, sense: Sense) -> bool:
+        """Whether a node not found would lie on the extension: both parents do, or one and the ends of both its edges.
 
-        There sheets of the extension part, which no cloth goes round.
+        There sheets of the extension may part, at a corner of the border.
+        """
+        status = self._lattice.status
+        parents = [(i - sense[0], j), (i, j - sense[1])]
+        off = [status[parent] == NodeStatus.OFF_MOULD for parent in parents]
+        if all(off) or not any(off):
+            return all(off)
+        lengths = (self._fabric.warp_spacing, self._fabric.weft_spacing)
+        mesh = self._surface.unfolding
+        for family, parent, length in zip((WARP, WEFT), parents, lengths, strict=True):
+            leave = edge_ends(mesh, self._lattice, self.start, family, *parent, sense[family], length)[:2]
+            end = step_from(self._surface, self._place(parent), length * np.array(leave))
+            if end is not None and not off_mould(mesh, *end, self._slack):
+                return False
+        return True
+
+    def _round_the_border(self, found: Settled) -> bool:
+        """Whether a node lies beside the mould, and the way to it goes round the end of the extension.
+
+        At a corner of the mould's border sheets of the extension part, which no cloth goes round.
         """
         bends = [edge.bend for edge in (found.warp_edge, found.weft_edge) if edge.bend >= 0]
-        if not bends or not off_mould(self._surface.unfolding, *found.place, self._slack):
-            return False
-        surface = self._surface
-        around = np.isin(surface.faces, bends).any(axis=1)
-        return bool((surface.face_rim[around] >= 0).any())
+        ends_there = bool(self._surface.border_vertex[bends].any()) if bends else False
+        return ends_there and bool(off_mould(self._surface.unfolding, *found.place, self._slack))
 
     def _folded(self, i: int, j: int, sense: Sense, found: Settled) -> bool:
         """Whether the cell of a node found folds at one of its corners."""
