@@ -24,6 +24,8 @@ ASIDE: Final = 1e-4
 SAMPLES: Final = 12
 # rad; a face whose Gauss image is smaller unrolls flat for all that cloth could tell: no more shear than this.
 FLATTEST: Final = 1e-4
+# The image of a straight line of the parameters on its face may lie beside its chord by this much in the metric.
+MOST_DRIFT: Final = 0.1
 # A doubly curved face is looked at in at least so many places along its length.
 FEWEST_LOOKS: Final = 8
 
@@ -129,6 +131,7 @@ class Patch:
         self._bounds = np.array([[u0, v0], [u1, v1]])
         self.scale = np.ones(2)
         self._length = self.angle = np.inf
+        self._follows_bends = False
         self.scale = np.linalg.norm(self._evaluate(self._grid())[:, 1:3], axis=2).mean(axis=0)
         self.scale[self.scale == 0] = 1.0
         if tolerances is None:
@@ -136,6 +139,7 @@ class Patch:
         extent = float(np.linalg.norm(np.ptp(self.samples.position, axis=0)))
         self._length = extent if self.developable else extent / self._looks()
         self.angle = tolerances.angle if self.developable else tolerances.gauss_angle
+        self._follows_bends = not self.developable
 
     @cached_property
     def samples(self) -> Nodes:
@@ -210,6 +214,8 @@ class Patch:
         twice_mean = (e * n - 2 * f * m + g * k) / area2
         third_form = twice_mean[:, None] * second_form - gauss[:, None] * first_form
         metric = first_form / self._length**2 + third_form / self.angle**2
+        if self._follows_bends:
+            metric = _with_bends(metric, tangent, second)
         return Nodes(np.full(len(uv), self.index), uv, position, normal, tangent, metric, gauss, pole)
 
     def _evaluate(self, uv: Floats) -> Floats:
@@ -246,6 +252,29 @@ class Patch:
             self.surface.NbVIntervals(GeomAbs_Shape.GeomAbs_C2),
         )
         return int(min(max(FEWEST_LOOKS, *spans), 4 * FEWEST_LOOKS))
+
+
+def _with_bends(metric: Floats, tangent: Floats, second: Floats) -> Floats:
+    """The metric, longer where the face bends straight lines of its parameters sideways.
+
+    The chord of such a line d passes its middle by Γ(d, d) / 8 beside it on the face, Γ being the tangential parts of
+    the second derivatives. Where that is more than MOST_DRIFT of a unit, nodes a unit apart would lie nearer to the line
+    than its chord, and facets between them face down: so along a fillet that runs out in a plane, whose normal does not
+    turn there. To the metric comes the quadratic form that has 1 where the drift may be so much at most.
+    """
+    uu, uv, vv = metric.T
+    size, axes = np.linalg.eigh(np.stack([uu, uv, uv, vv], axis=1).reshape(-1, 2, 2))
+    size = np.sqrt(np.maximum(size, 1e-12 * size[:, 1:] + np.finfo(float).tiny))
+    root = np.einsum("kij,kj,klj->kil", axes, size, axes)
+    inverse = np.einsum("kij,kj,klj->kil", axes, 1 / size, axes)
+    bend = np.stack([in_parameters(tangent, second[:, p]) for p in (0, 1, 1, 2)], axis=2).reshape(-1, 2, 2, 2)
+    # both components of Γ in steps of a unit, as forms of steps of a unit
+    bend = np.einsum("kcd,kdij->kcij", root, bend)
+    bend = np.einsum("kai,kcij,kjb->kcab", inverse, bend, inverse)
+    value, vector = np.linalg.eigh(bend)
+    most = np.einsum("kcai,kci,kcbi->kab", vector, np.abs(value), vector) / (8 * MOST_DRIFT)
+    added = np.einsum("kia,kab,kbj->kij", root, most, root)
+    return metric + added.reshape(-1, 4)[:, [0, 1, 3]]
 
 
 def metric_length(metric: Floats, step: Floats) -> Floats:
