@@ -10,7 +10,7 @@ import numpy as np
 from meshdrape.errors import MouldError
 from meshdrape.mould.apart import step
 from meshdrape.mould.check import FARTHEST, at
-from meshdrape.mould.patch import Bools, Floats, Nodes, Patch, Tolerances, in_parameters, metric_length
+from meshdrape.mould.patch import Bools, Floats, Nodes, Patch, Tolerances
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Edge
@@ -24,8 +24,6 @@ FEWEST_PROBES: Final = 5
 ASIDE: Final = 1 / 64
 # A strip between two such edges has a million triangles, half of the most there may be.
 MOST_NODES: Final = 500_000
-# The image of an edge on a face may lie beside its chord by this much in the metric.
-MOST_DRIFT: Final = 0.1
 # mm; what is smaller is a point and not divided. The finest that Open CASCADE keeps apart from a point, the tip of a
 # cone of 1e-7, is divided as finely as the rim across from it, or no facets between the two follow the face.
 SHORTEST: Final = 1e-10
@@ -66,10 +64,8 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
     """Return the parameters of the nodes on an edge, its ends included, ascending.
 
     Segments are halved until the chord keeps within the chord tolerance and half the angle tolerance of the
-    edge, is no longer than a unit in the metric of the faces beside it, and lies beside the edge on these by no
-    more than their facets can make up for: where a fillet runs out in a plane its normal does not turn along the
-    rim, and a chord may pass beyond the nodes next to it. The angle is that of creases where the edge is one; a
-    smooth edge turns no fibre. Halving the parameter puts nodes opposite each other on the
+    edge, and is no longer than a unit in the metric of the faces beside it. The angle is that of creases where
+    the edge is one; a smooth edge turns no fibre. Halving the parameter puts nodes opposite each other on the
     two rims of a ruled face.
 
     Raises
@@ -96,7 +92,7 @@ def divide(passages: list[Passage], tolerances: Tolerances) -> Floats:
         split = pieces > 1.0
         for passage in passages:
             rest = np.flatnonzero(~split)
-            split[rest] = _is_coarse(passage, probed[rest])
+            split[rest] = _is_long(passage, probed[rest])
         segments = segments[split]
         middle = segments.mean(axis=1, keepdims=True)
         done.append(middle[:, 0])
@@ -161,8 +157,8 @@ def _pieces(curve: Any, segments: Floats, at: Floats, chord_tolerance: float, di
     return np.where(_has_size(values[..., 0, :]), pieces, 1.0)
 
 
-def _is_coarse(passage: Passage, at: Floats) -> Bools:
-    """Whether segments are longer than a unit in the metric of a face, or lie beside the edge on it, (s,)."""
+def _is_long(passage: Passage, at: Floats) -> Bools:
+    """Whether segments are longer than a unit in the metric of a face, (s,)."""
     nodes = passage.nodes(at.ravel())
     uv, metric = nodes.uv.reshape(*at.shape, 2), nodes.metric.reshape(*at.shape, 3)
     (du, dv), (uu, uv_, vv) = (
@@ -170,11 +166,7 @@ def _is_coarse(passage: Passage, at: Floats) -> Bools:
         np.moveaxis((metric[:, 1:] + metric[:, :-1]) / 2, 2, 0),
     )
     length = np.sqrt(np.maximum(uu * du**2 + 2 * uv_ * du * dv + vv * dv**2, 0.0)).sum(axis=1)
-    points = nodes.position.reshape(*at.shape, 3)
-    share = (at - at[:, :1]) / (at[:, -1:] - at[:, :1])
-    aside = points - points[:, :1] - share[..., None] * (points[:, -1:] - points[:, :1])
-    drift = metric_length(nodes.metric, in_parameters(nodes.tangent, aside.reshape(-1, 3))).reshape(at.shape)
-    return np.asarray(((length > 1.0) | (drift > MOST_DRIFT).any(axis=1)) & _has_size(points))
+    return np.asarray((length > 1.0) & _has_size(nodes.position.reshape(*at.shape, 3)))
 
 
 def _has_size(points: Floats) -> Bools:
