@@ -267,7 +267,8 @@ def sweep(
                     known = False
             else:
                 known = False
-                if code != DOUBTED and status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD and not every:
+                asked = code == DOUBTED or (every and code == NOT_CONVERGED)
+                if status[ia, j] == OFF_MOULD and status[i, jb] == OFF_MOULD and not asked:
                     # the extension is no mould: what fails on it is lost to it, not to the cloth
                     code = OUTSIDE
                 status[i, j] = code

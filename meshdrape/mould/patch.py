@@ -258,7 +258,7 @@ def _with_bends(metric: Floats, tangent: Floats, second: Floats) -> Floats:
     """The metric, longer where the face bends straight lines of its parameters sideways.
 
     The chord of such a line d passes its middle by Γ(d, d) / 8 beside it on the face, Γ being the tangential parts of
-    the second derivatives. Where that is much of a unit, nodes may lie nearer to the line than its chord, and the facets
+    the second derivatives. Where that is much of a unit, nodes may lie nearer to the line than its chord, and facets
     between them face down: so along a fillet that runs out in a plane, whose normal does not turn there. To the metric
     comes the quadratic form that is 1 for steps which drift by MOST_DRIFT of a unit at most.
     """

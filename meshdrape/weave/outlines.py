@@ -10,12 +10,19 @@ IntArray = NDArray[np.int64]
 
 
 def triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:
-    """Triangulation (n - 2, 3) of a polygon seen along its normal; None where it overlaps itself as seen so."""
+    """Triangulation (n - 2, 3) of a polygon seen along its normal; None where it overlaps itself as seen so.
+
+    It is the same whichever corner comes first and however the polygon lies in space.
+    """
     import mapbox_earcut
 
-    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    across /= np.linalg.norm(across)
-    flat = np.stack([points @ across, points @ np.cross(normal, across)], axis=1)
+    # ears are cut off from the first corner on, and found along the first axis
+    away = points - points.mean(axis=0)
+    away -= np.outer(away @ normal, normal)
+    first = int(np.argmax(np.einsum("ni,ni->n", away, away)))
+    across = away[first] / max(float(np.linalg.norm(away[first])), np.finfo(float).tiny)
+    order = np.roll(np.arange(len(points)), -first)
+    flat = np.stack([away @ across, away @ np.cross(normal, across)], axis=1)[order]
     corners = mapbox_earcut.triangulate_float64(flat, np.array([len(flat)], dtype=np.uint32))
     ears = np.asarray(corners, dtype=np.int64).reshape(-1, 3)
     a, b, c = (flat[ears[:, k]] for k in range(3))
@@ -25,4 +32,4 @@ def triangulate(points: FloatArray, normal: FloatArray) -> IntArray | None:
     if not covers or np.abs(area).min() <= 1e-12 * whole:
         return None
     ears[area < 0] = ears[area < 0][:, ::-1]
-    return ears
+    return order[ears]
