@@ -25,23 +25,22 @@ PREFIX = "kernels-"
 blas.leave_out_if_unwanted()
 
 
-def kernel(function=None, *, inline="never", nogil=False, lent=False):
+def kernel(function=None, *, inline="never", nogil=False, makes_arrays=False):
     """A function for arrays, compiled when it is first called and kept for the next run.
 
     Parameters
     ----------
-    lent : bool
-        Arrays are only lent to it: it makes none and does not count who holds those it is given. Where a small function
-        is called with all tables of a net, numba's counting (its option `_nrt`) takes several times as long as what the
-        function does. One that makes an array all the same does not compile.
+    makes_arrays : bool
+        Whether it makes any. Else arrays are only lent to it, and numba need not count who holds them, which takes
+        several times as long as what a small function does that is called with all tables of a net.
     """
     if function is None:
-        return lambda function: kernel(function, inline=inline, nogil=nogil, lent=lent)
+        return lambda function: kernel(function, inline=inline, nogil=nogil, makes_arrays=makes_arrays)
     place, told = folder(), numba.config.CACHE_DIR
     try:
         numba.config.CACHE_DIR = str(place or told)
         return _in_one_form(
-            numba.njit(cache=place is not None, error_model="numpy", inline=inline, nogil=nogil, _nrt=not lent)(
+            numba.njit(cache=place is not None, error_model="numpy", inline=inline, nogil=nogil, _nrt=makes_arrays)(
                 function
             )
         )

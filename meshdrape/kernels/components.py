@@ -22,7 +22,7 @@ def connected_parts(a: ArrayLike, b: ArrayLike, n: int) -> NDArray[np.int64]:
     return label
 
 
-@kernel(lent=True)
+@kernel
 def _join(a, b, label):
     """Fill `label` (n,)."""
     for k in range(len(label)):
@@ -32,7 +32,7 @@ def _join(a, b, label):
     _number(label)
 
 
-@kernel(lent=True)
+@kernel
 def join_uncrossed(faces, nearest, on_fibre, label):
     """Number the parts in which the vertices of a mesh hang together by edges that no net edge crosses.
 

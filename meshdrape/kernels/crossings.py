@@ -177,7 +177,7 @@ def _follow(mesh, face, x, y, dx, dy, length, head_face, aimed, bent, sides, nea
     return n_passed, face, -1, -dx, -dy
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def cross(mesh, net, start, warp, weft, nearest, cell, mark, mark_share):
     """Follow every edge of a net over the mesh, but those of a generator that bend.
 

@@ -10,7 +10,7 @@ from meshdrape.kernels.cache import kernel
 N_RADII = 24
 
 
-@kernel
+@kernel(makes_arrays=True)
 def reach_of_crowds(centre, position, defect, key, low, size, width, half, margin, own):
     """From how far off the vertices round each centre may offer a shorter way to a path of length 2 `half`.
 

@@ -11,13 +11,13 @@ WARP = 0
 WEFT = 1
 
 
-@kernel(lent=True)
+@kernel
 def edge_key(net, family, i, j):
     """Number of the edge kept at [i, j] of its family."""
     return 2 * (i * net.status.shape[1] + j) + family
 
 
-@kernel(lent=True)
+@kernel
 def edge_ends(mesh, net, start, family, i, j, step, length):
     """Direction of the edge from (i, j) to its neighbour `step` (+1 or -1) on, at both ends, each in its node's frame.
 
@@ -86,7 +86,7 @@ def edge_ends(mesh, net, start, family, i, j, step, length):
     return -ex, -ey, -sx, -sy
 
 
-@kernel(lent=True)
+@kernel
 def keep_edge(net, start, family, i, j, step, dx, dy, ex, ey):
     """Keep the edge from (i, j) to its neighbour: (dx, dy) leaves (i, j), (ex, ey) arrives at the neighbour."""
     if family == WARP:

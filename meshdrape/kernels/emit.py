@@ -29,7 +29,7 @@ def positions(mesh, net, i_first, out):
                 out[a, j, k] = frame[k] + x * frame[3 + k] + y * frame[6 + k]
 
 
-@kernel(lent=True)
+@kernel
 def node_tangent(mesh, net, start, family, i, j, spacing, came):
     """Unit tangent of a fibre at a node, in the frame of its face: the mean of the edges before and after it.
 
@@ -71,7 +71,7 @@ def node_tangent(mesh, net, start, family, i, j, spacing, came):
     return dx / size, dy / size
 
 
-@kernel(lent=True)
+@kernel
 def _tangent(mesh, net, start, family, i, j, spacing, came):
     """The same; where one face holds the neighbours on both sides their chord is the mean of the two edges."""
     f = net.face[i, j]
@@ -94,7 +94,7 @@ def _tangent(mesh, net, start, family, i, j, spacing, came):
     return node_tangent(mesh, net, start, family, i, j, spacing, came)
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def directions(mesh, net, start, i_first, warp, weft, warp_out, weft_out):
     """Unit tangents (rows, n_weft, 3) of the fibres at the nodes of the rows from i_first on; NaN without a node."""
     n_weft = net.status.shape[1]
@@ -126,7 +126,7 @@ def border_status(mesh, face, xy, slack, out):
         out[n] = OFF_MOULD if off_mould(mesh, face[n], xy[n, 0], xy[n, 1], slack) else 0
 
 
-@kernel(lent=True)
+@kernel
 def _crosses_mould(mesh, face, x, y, dx, dy, length):
     """Whether the straight path from (x, y) touches a face of the mould."""
     entered = -1
@@ -160,7 +160,7 @@ def _crosses_mould(mesh, face, x, y, dx, dy, length):
     return False
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def touching_cells(mesh, net, start, i_first, warp, weft, out):
     """Whether each whole cell touches the mould, by a corner or an edge; rows from i_first, out (rows, n_weft - 1)."""
     _touching_by_corner(net.status, i_first, out)
@@ -202,7 +202,7 @@ def _touching_by_corner(status, i_first, out):
             out[a, j] = (high <= OFF_MOULD) & (low == 0)
 
 
-@kernel(lent=True)
+@kernel
 def _edge_touches(mesh, net, start, family, i, j, length):
     """Whether the edge that leaves (i, j) for larger indices crosses a face of the mould, 1 or 0."""
     dx, dy, _, _ = edge_ends(mesh, net, start, family, i, j, 1, length)

@@ -7,7 +7,7 @@ import numpy as np
 from meshdrape.kernels.cache import kernel
 
 
-@kernel
+@kernel(makes_arrays=True)
 def pair_edges(faces, neighbour):
     """Find the half-edge across each edge: fills `neighbour` (m, 3) with 3 g + l, -1 at a border.
 
@@ -50,7 +50,7 @@ def pair_edges(faces, neighbour):
     return True
 
 
-@kernel
+@kernel(makes_arrays=True)
 def measure_facets(vertices, faces, normal, area, angle):
     """Fill `normal` (m, 3), unit; `area` (m,), mm2; and `angle` (m, 3), rad, at each corner."""
     u = np.empty(3)
@@ -75,7 +75,7 @@ def measure_facets(vertices, faces, normal, area, angle):
         normal[f, 2] = nz / size
 
 
-@kernel(lent=True)
+@kernel
 def chords(normal, neighbour, first, chord):
     """Distance between the tips of the unit normals on both sides of each edge of the faces from `first` on.
 
@@ -91,7 +91,7 @@ def chords(normal, neighbour, first, chord):
             chord[f - first, k] = math.sqrt(away)
 
 
-@kernel(lent=True)
+@kernel
 def star_radii(vertices, faces, area, radius):
     """Fill `radius` (n,): distance from each vertex to the nearest line of the edges round it, mm."""
     radius[:] = math.inf
@@ -106,7 +106,7 @@ def star_radii(vertices, faces, area, radius):
             radius[a] = min(radius[a], 2.0 * area[f] / math.sqrt(edge))
 
 
-@kernel
+@kernel(makes_arrays=True)
 def may_be_nearest(vertices, faces, point):
     """Faces one of which holds the point of the mesh nearest to a given one, (n,): few of them, in their order.
 

@@ -40,7 +40,7 @@ def point_triangle_distance(px, py, pz, frame, corner):
     return math.sqrt(height2 if inside else height2 + best)
 
 
-@kernel
+@kernel(makes_arrays=True)
 def flood(mesh, first_face, a, b, bound):
     """Faces reached from `first_face` over edges for which |x - a| + |x - b| <= bound holds somewhere.
 

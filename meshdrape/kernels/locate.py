@@ -15,7 +15,7 @@ MAX_STEPS = 80
 SAME_PLANE = math.cos(math.radians(20.0))
 
 
-@kernel
+@kernel(makes_arrays=True)
 def first_nodes(mesh, net, out):
     """A node on each face, out (m, 2): the first one, else the nearest neighbouring face's; -1 where none is near."""
     n_warp, n_weft = net.status.shape
@@ -49,7 +49,7 @@ def first_nodes(mesh, net, out):
                     tail += 1
 
 
-@kernel(lent=True)
+@kernel
 def _one_plane(mesh, f, g):
     """Whether two faces are turned against each other by less than the angle of a crease."""
     a = mesh.frame[f]
@@ -69,7 +69,7 @@ def _node(mesh, net, i, j, out):
         out[k] = frame[k] + net.xy[i, j, 0] * frame[3 + k] + net.xy[i, j, 1] * frame[6 + k]
 
 
-@kernel(lent=True)
+@kernel
 def _faces_alike(mesh, net, i, j, normal):
     """Whether a corner of the cell lies on a face turned to the same side as a normal."""
     for corner in range(4):
@@ -82,7 +82,7 @@ def _faces_alike(mesh, net, i, j, normal):
     return False
 
 
-@kernel(lent=True)
+@kernel
 def _solve(px, py, pz, n, a, u, v):
     """Coordinates (alpha, beta) of a point from corner a along u and v, seen along the unit normal n."""
     rx = px - a[0]
@@ -97,7 +97,7 @@ def _solve(px, py, pz, n, a, u, v):
     return rv / uv, ur / uv
 
 
-@kernel(lent=True)
+@kernel
 def _climb(mesh, net, i, j, px, py, pz, normal, a, u, v):
     """From the cell (i, j) on to the one that a point seems to lie on, seen along a normal.
 
@@ -157,7 +157,7 @@ def _climb(mesh, net, i, j, px, py, pz, normal, a, u, v):
     return -1, -1
 
 
-@kernel(lent=True)
+@kernel
 def _lies(mesh, net, i, j, face, point, normal, warp, weft, corner, share):
     """Whether a point lies on the cell (i, j), if it is whole; `share` (2,) gets its coordinates there, 0 to 1."""
     if not is_whole(net.status, i, j) or not _faces_alike(mesh, net, i, j, normal):
@@ -180,7 +180,7 @@ def _lies(mesh, net, i, j, face, point, normal, warp, weft, corner, share):
     return True
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def climb_to_cells(mesh, net, warp, weft, face, point, normal, first, cell, share):
     """The cell over each point, where a climb from a node nearby leads there.
 
@@ -221,7 +221,7 @@ def climb_to_cells(mesh, net, warp, weft, face, point, normal, first, cell, shar
                 break
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def search_cells(mesh, net, warp, weft, face, point, normal, missed, cell, share):
     """The cell over each point that no climb led to, among all those with a corner near it: seams, rims and creases.
 
@@ -279,7 +279,7 @@ def search_cells(mesh, net, warp, weft, face, point, normal, missed, cell, share
                         share[q] = told
 
 
-@kernel(lent=True)
+@kernel
 def _gap2(mesh, net, i, j, point, place):
     """Square of the distance in space between a node and a point, mm2."""
     _node(mesh, net, i, j, place)
@@ -289,7 +289,7 @@ def _gap2(mesh, net, i, j, point, place):
     return gap2
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def fibres_on_cells(mesh, net, start, warp, weft, tangent, normal, cell, share, warp_out, weft_out):
     """Directions of the fibres at points of cells: the mean of those at the corners, in the plane of the point's face.
 

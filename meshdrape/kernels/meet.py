@@ -45,7 +45,7 @@ def spread_on_faces(net, window, diameter, spacing):
     return False
 
 
-@kernel(lent=True)
+@kernel
 def _may_lie(position, kept, i, j, ci, cj, a, b, normal, warp, weft, to):
     """Whether the node (i, j) can lie on the whole cell (ci, cj), of whose corners (a, b) is the nearest.
 
@@ -100,7 +100,7 @@ def _triple(u, v, n):
     return n[0] * (u[1] * v[2] - u[2] * v[1]) + n[1] * (u[2] * v[0] - u[0] * v[2]) + n[2] * (u[0] * v[1] - u[1] * v[0])
 
 
-@kernel
+@kernel(makes_arrays=True)
 def stop_where_met(mesh, net, index, position, order, warp, weft):
     """Take back, in a fixed order, each node that lies on a cell kept before it, and what depends on it.
 

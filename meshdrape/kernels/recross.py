@@ -55,7 +55,7 @@ def returning_wefts(face, status, region, returns, j0, sense, found):
     return n
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def returning_warps(face, status, region, returns, i0, sense, found):
     """The same of the warp fibres, from row i0: j, the i of the first node beyond, the i of the first one back."""
     n_warp, n_weft = status.shape

@@ -13,7 +13,7 @@ def _angle(px, py, qx, qy):
     return math.atan2(px * qy - py * qx, px * qx + py * qy)
 
 
-@kernel(lent=True)
+@kernel
 def _mean_corner(start, i, j, ax, ay, bx, by, cx, cy, dx, dy, ex, ey, fx, fy, gx, gy, hx, hy):
     """Mean angle from +warp to +weft over the corners of the cell (i, j)-(i + 1, j + 1).
 
@@ -39,7 +39,7 @@ def _mean_corner(start, i, j, ax, ay, bx, by, cx, cy, dx, dy, ex, ey, fx, fy, gx
     return 0.25 * total
 
 
-@kernel(lent=True)
+@kernel
 def shear_of(mesh, net, start, i, j, initial_angle, warp, weft):
     """Signed shear of one cell (i, j)-(i + 1, j + 1) that has all its corners, rad, as `cell_shear` has it."""
     ax, ay, bx, by = edge_ends(mesh, net, start, WARP, i, j, 1, warp)
@@ -49,14 +49,14 @@ def shear_of(mesh, net, start, i, j, initial_angle, warp, weft):
     return initial_angle - _mean_corner(start, i, j, ax, ay, bx, by, cx, cy, dx, dy, ex, ey, fx, fy, gx, gy, hx, hy)
 
 
-@kernel(lent=True)
+@kernel
 def past_stop(mesh, net, start, si, sj, i, j, initial_angle, stop_at, warp, weft):
     """Whether the cell of a node and its parents, one step back in the sense (si, sj), is sheared too far."""
     shear = shear_of(mesh, net, start, min(i, i - si), min(j, j - sj), initial_angle, warp, weft)
     return abs(shear) > stop_at
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, makes_arrays=True)
 def cell_shear(mesh, net, start, i_first, initial_angle, warp, weft, out):
     """Signed shear of the cells (i, j)-(i + 1, j + 1) of the rows from i_first on, out (rows, n_weft - 1), rad.
 

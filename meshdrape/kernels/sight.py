@@ -29,7 +29,7 @@ REACH = 1.1
 WIDEST = 2.0
 
 
-@kernel(lent=True)
+@kernel
 def _offset(mesh, face, x, y, px, py, pz):
     """From (x, y) in a face to a point in space: two coordinates in the face's frame, and the third off its plane."""
     f = mesh.frame[face]
@@ -46,7 +46,7 @@ def _offset(mesh, face, x, y, px, py, pz):
     return u - x, v - y, w
 
 
-@kernel(lent=True)
+@kernel
 def _share_vertex(mesh, f, g):
     for k in range(3):
         for m in range(3):
@@ -55,14 +55,14 @@ def _share_vertex(mesh, f, g):
     return False
 
 
-@kernel
+@kernel(makes_arrays=True)
 def _joined(mesh, f, g, px, py, pz, radius):
     """Whether one can go from face f to face g, which holds the point, over faces that near to it."""
     at = np.array([px, py, pz])
     return bool(np.any(flood(mesh, f, at, at, 2.0 * radius) == g))
 
 
-@kernel(lent=True)
+@kernel
 def sight(mesh, face, x, y, goal, goal_x, goal_y, reach):
     """Where a node in another face appears from (x, y): the way and the length of the straight path to it.
 
@@ -145,7 +145,7 @@ def sight(mesh, face, x, y, goal, goal_x, goal_y, reach):
     return _joined(mesh, near_face, goal, px, py, pz, 2.0 * nearest), near_u, near_v
 
 
-@kernel(lent=True)
+@kernel
 def is_whole(status, i, j):
     """Whether the cell (i, j) has its four nodes."""
     n_warp, n_weft = status.shape
@@ -159,7 +159,7 @@ def is_whole(status, i, j):
     )
 
 
-@kernel(lent=True)
+@kernel
 def lies_on_cell(mesh, net, i, j, face, x, y, warp, weft, corner):
     """Whether (x, y) in a face lies on the cell (i, j), whose four nodes are seen from there.
 

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from meshdrape.kernels.cache import kernel
 from meshdrape.kernels.certify import second_route
 from meshdrape.kernels.edges import OFF_MOULD, WARP, WEFT, edge_ends, keep_edge
@@ -34,7 +32,7 @@ FREE_WEFT = 3
 @kernel(nogil=True)
 def sweep(
     mesh, detours, net, start, si, sj, i_first, i_count, j_first, j_count,
-    warp, weft, initial_angle, stop_at, tolerance, slack, every, report,
+    warp, weft, initial_angle, stop_at, tolerance, slack, every, arrived, report,
 ):  # fmt: skip
     """Place the nodes (i_first + si a, j_first + sj b) of one tile, 0 <= a < i_count, 0 <= b < j_count.
 
@@ -59,6 +57,8 @@ def sweep(
         A node this near to the border counts as on the mould, mm.
     every : bool
         Leave every node to be settled by others, as if it had not converged: what is found is their first guess.
+    arrived : (j_count, 2)
+        Directions in which the weft edges of the row before arrive, (0, 0) where not known, as at the beginning.
     report : (5,) int64
         Gets: nodes placed, iterations, the (i, j) of a node to be settled, and why: LOST, UNSURE, FREE_WARP, FREE_WEFT.
 
@@ -85,8 +85,6 @@ def sweep(
     warp_out = net.warp_out
     weft_out = net.weft_out
     status = net.status
-    # directions in which the weft edges of the row before arrive, (0, 0) where not known
-    arrived = np.zeros((j_count, 2))
     i0 = start.origin[0]
     j0 = start.origin[1]
     tolerance2 = tolerance * tolerance

@@ -5,14 +5,14 @@ import math
 from meshdrape.kernels.cache import kernel
 
 
-@kernel(lent=True)
+@kernel
 def unfold(vertices, faces, neighbour, corner, frame, line, crossing, plane):
     """Lay every face in a frame of its own and find the motions over its sides: fills the tables of `Unfolding`."""
     _lay_flat(vertices, faces, corner, frame)
     _join(corner, neighbour, line, crossing, plane)
 
 
-@kernel(lent=True)
+@kernel
 def _lay_flat(vertices, faces, corner, frame):
     """Lay every face in a frame of its own: fills `corner` (m, 3) and `frame` (m, 9) of `Unfolding`."""
     for f in range(len(faces)):
@@ -51,7 +51,7 @@ def _lay_flat(vertices, faces, corner, frame):
         frame[f, 8] = wz
 
 
-@kernel(lent=True)
+@kernel
 def _side(corner, f, k):
     """Tail and head of side k of a face in its frame."""
     x1 = corner[f, 0]
@@ -64,7 +64,7 @@ def _side(corner, f, k):
     return x2, y2, 0.0, 0.0
 
 
-@kernel(lent=True)
+@kernel
 def _join(corner, neighbour, line, crossing, plane):
     """From faces laid flat to their sides and the motions over them: fills `line`, `crossing`, `plane`."""
     for f in range(len(corner)):

@@ -122,7 +122,7 @@ def nearest_way(on, out, source, sx, sy, face, x, y):
     return best, ax, ay, last, lx, ly, base
 
 
-@kernel
+@kernel(makes_arrays=True)
 def nearest_ways(on, out, source, sx, sy, face, xy):
     """Lengths of the shortest ways to many places, (n,); infinite where the face is -1."""
     lengths = np.full(len(face), math.inf)

@@ -72,7 +72,7 @@ def fill(
         while not sweep(
             mesh, table, lattice, judge.start, tile.si, tile.sj, first_i, count_i, first_j, count_j,
             fabric.warp_spacing, fabric.weft_spacing, fabric.initial_angle, judge.stop_at,
-            tolerance, slack, settle_every, report,
+            tolerance, slack, settle_every, np.zeros((count_j, 2)), report,
         ):  # fmt: skip
             i, j, why = (int(v) for v in report[2:])
             judge.decide((i, j), why, (tile.si, tile.sj))
