@@ -184,3 +184,12 @@ def test_tessellation_is_the_same_every_time():
     first, second = (all_faces(solid("fillet box"), **COARSE) for _ in range(2))
     np.testing.assert_array_equal(first.vertices, second.vertices)
     np.testing.assert_array_equal(first.triangles, second.triangles)
+
+
+def test_no_facet_of_a_fillet_lies_face_down():
+    """Where it runs out in the rim its normal does not turn along it: chords there are long, and pass beyond nodes."""
+    surface = meshdrape.read_mould(SAMPLES / "hat.step", faces="fillet").surface
+    face, k = np.nonzero(surface.face_neighbour >= 0)
+    other = surface.face_neighbour[face, k] // 3
+    turn = np.linalg.norm(surface.face_normal[face] - surface.face_normal[other], axis=1)
+    assert turn.max() < 4 * ANGLE_TOLERANCE ** (2 / 3)

@@ -8,7 +8,7 @@ from cases import CASES, Case
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lattice import cells_at, nodes_at, offsets, planar_lattice, shear_deg, statuses_at
-from moulds import Mesh, cube_corner, hypar, icosphere, plate, rotation, tube
+from moulds import Mesh, cube_corner, grid_triangles, hypar, icosphere, plate, rotation, tube
 
 import meshdrape
 
@@ -229,3 +229,27 @@ def test_tube_from_every_facet():
         turn = rotation([0, 0, 1], facets * step)
         other = meshdrape.drape(mesh.mould(), meshdrape.Fabric(9.0), turn @ start, turn @ [0, 0.4, 1])
         compare(first, other, place=lambda p, turn=turn: p @ turn.T)
+
+
+def test_cloth_over_a_crooked_hole_does_not_hang_on_numbers_or_place():
+    """A hole in hills that is seen whole from nowhere within: what fills it is the same triangles."""
+    rng = np.random.default_rng(3)
+    side = np.linspace(0, 600, 15)
+    vertices = np.stack([*np.meshgrid(side, side, indexing="ij"), np.zeros((15, 15))], axis=-1).reshape(-1, 3)
+    vertices += rng.normal(size=vertices.shape) * [6, 6, 5]
+    triangles = grid_triangles(14, 14)
+    x, y = np.abs(vertices[triangles].mean(axis=1)[:, :2] - [300, 300]).T
+    x2, y2 = np.abs(vertices[triangles].mean(axis=1)[:, :2] - [400, 360]).T
+    triangles = triangles[~((x < 140) & (y < 40) | (x2 < 40) & (y2 < 110))]
+    used, triangles = np.unique(triangles, return_inverse=True)
+    case = Case(Mesh(vertices[used], triangles.reshape(-1, 3)), 15.0, (150, 140, 0), (1, 0.3, 0))
+    net = case.drape()
+    for _ in range(3):
+        order = rng.permutation(len(case.mesh.triangles))
+        compare(net, replace(case, mesh=Mesh(case.mesh.vertices, case.mesh.triangles[order])).drape())
+    turn = rotation([0.3, -0.5, 0.8], 2.1)
+    moved = replace(
+        case, mesh=Mesh(case.mesh.vertices @ turn.T, case.mesh.triangles), seed=turn @ case.seed,
+        direction=turn @ case.direction,
+    )  # fmt: skip
+    compare(net, moved.drape(), place=lambda p: p @ turn.T)
