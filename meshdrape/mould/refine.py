@@ -9,7 +9,7 @@ import numpy as np
 
 from meshdrape.errors import MouldError
 from meshdrape.mould.facets import Facets
-from meshdrape.mould.patch import Bools, Floats, Ints, Nodes, Tolerances, in_parameters, metric_length
+from meshdrape.mould.patch import MOST_DRIFT, Bools, Floats, Ints, Nodes, Tolerances, in_parameters, metric_length
 
 # Sizes within this ratio of one another are split in random order: by size alone only peaks would be split.
 SIZE_CLASS: Final = 1.25
@@ -92,14 +92,16 @@ def _size(facets: Facets, edge: Ints, tolerances: Tolerances, developable: Bools
 
 
 def _plain_size(nodes: Nodes, a: Ints, b: Ints, chord_tolerance: float) -> Floats:
-    """Size of edges a-b on doubly curved faces: by the metric and the gap to the face."""
+    """Size of edges a-b on doubly curved faces: by the metric, the gap to the face and the drift on it."""
     metric = (nodes.metric[a] + nodes.metric[b]) / 2
     step = nodes.uv[b] - nodes.uv[a]
     length = metric_length(metric, step)
     # the middle of the cubic through both ends with their tangents, from the middle of the chord
     bulge = np.einsum("kpi,kp->ki", nodes.tangent[a] - nodes.tangent[b], step) / 8
-    gap = np.abs(np.einsum("ki,ki->k", bulge, (nodes.normal[a] + nodes.normal[b]) / 2))
-    return np.asarray(np.maximum(length, np.sqrt(gap / chord_tolerance)))
+    tangent, normal = (nodes.tangent[a] + nodes.tangent[b]) / 2, (nodes.normal[a] + nodes.normal[b]) / 2
+    gap = np.abs(np.einsum("ki,ki->k", bulge, normal))
+    drift = metric_length(metric, in_parameters(tangent, bulge))
+    return np.asarray(np.maximum(length, np.sqrt(np.maximum(gap / chord_tolerance, drift / MOST_DRIFT))))
 
 
 def _size_from_pole(nodes: Nodes, pole: Ints, other: Ints, chord_tolerance: float) -> Floats:
