@@ -51,7 +51,7 @@ WARM = """
 """
 DRAPE = "mould = {mould}\ndef job(mould): meshdrape.drape(mould, meshdrape.Fabric({spacing}), threads=1)"
 COLLAR = (
-    "from meshdrape.weave.collar import extended\nmould = {mould}\ndef job(mould): extended(mould.surface, {depth})"
+    "from meshdrape.weave.lay.collar import extended\nmould = {mould}\ndef job(mould): extended(mould.surface, {depth})"
 )
 WING, CURVED = f"meshdrape.read_mould({str(ROOT / 'samples' / 'wing_spar.stl')!r})", "doubly_curved()"
 CONE = f"meshdrape.read_mould({str(ROOT / 'samples' / 'cone.step')!r})"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from meshdrape.geodesic.distance import exact_distances
 from meshdrape.geodesic.patch import Patch, faces_between
 from meshdrape.surface import Surface, SurfacePoint
-from meshdrape.weave.settle import MET, NodeSearch, Place, step_from
+from meshdrape.weave.lay.settle import MET, NodeSearch, Place, step_from
 
 FloatArray = NDArray[np.float64]
 

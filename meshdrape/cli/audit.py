@@ -17,7 +17,7 @@ from meshdrape.errors import FabricError, FileError, NetError, StartError
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
     from meshdrape.output import StoredNet
-    from meshdrape.weave.recheck import Recheck
+    from meshdrape.weave.recheck.verdict import Recheck
 
 # libigl measures edges for this long, s, unless told otherwise.
 SECONDS = 10.0
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
     """Check the net; one line of verdict."""
     del arguments
     from meshdrape.output import json_text, read_net
-    from meshdrape.weave.recheck import recheck
+    from meshdrape.weave.recheck.verdict import recheck
 
     path = Path(options.net)
     stored = read_net(path)

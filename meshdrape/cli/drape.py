@@ -123,7 +123,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
         from meshdrape.geodesic.guarded import prepare
         from meshdrape.weave import audit, drape, measure, read_off
-        from meshdrape.weave.balance import balance
+        from meshdrape.weave.measures.balance import balance
         from meshdrape.weave.summary import fabric_missing, summarise
 
         clock.lap("imports")

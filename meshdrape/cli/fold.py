@@ -90,7 +90,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
         sys.stdout.write(json_text(facts(answer)))
     elif not options.quiet:
-        from meshdrape.output.fold_text import fold_text
+        from meshdrape.output.fold.text import fold_text
 
         sys.stdout.write(fold_text(answer, targets))
     return DONE
@@ -98,7 +98,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
 def _write(answer: FoldAnswer, target: Path) -> None:
     if target.suffix.lower() == ".html":
-        from meshdrape.output.fold_page import write_fold_page
+        from meshdrape.output.fold.page import write_fold_page
 
         write_fold_page(answer, target)
         return

@@ -115,7 +115,7 @@ def _facts(found: Inspection) -> dict[str, Any]:
         "notes": [] if mould is None else list(mould.notes),
     }
     if mould is not None:
-        from meshdrape.weave.noise import mesh_noise
+        from meshdrape.weave.measures.noise import mesh_noise
 
         facts |= {
             "size_mm": mould.size.tolist(),

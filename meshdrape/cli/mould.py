@@ -12,7 +12,7 @@ from meshdrape.cli.options import add_parameters, add_tolerances, parameters_set
 from meshdrape.errors import FileError
 
 if TYPE_CHECKING:
-    from meshdrape.mould.library import Script
+    from meshdrape.mould.cad.library import Script
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, arguments: list[str]) -> int:
     """List the moulds, or the parameters of one, or make one and write it."""
     del arguments
-    from meshdrape.mould import library
+    from meshdrape.mould.cad import library
 
     if options.list or options.name is None:
         if options.output or options.set or options.parameters:
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace, arguments: list[str]) -> int:
 
 def _make(script: Script, options: argparse.Namespace) -> dict[str, Any]:
     """Make the mould, write it, and return what there is to say of it."""
-    from meshdrape.mould import export
+    from meshdrape.mould.cad import export
     from meshdrape.output.files import atomic_write, check_suffix, check_target
 
     target = Path(options.output)

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import MouldError, SelectionError
-from meshdrape.mould.check import Fault, as_arrays, examine
 from meshdrape.mould.files import existing_file
-from meshdrape.mould.meshfile import read_mesh
+from meshdrape.mould.formats.reader import read_mesh
+from meshdrape.mould.mesh.check import Fault, as_arrays, examine
 from meshdrape.mould.mould import CadFace, Mould
 from meshdrape.mould.read import MESH, read_mould, refuse_tolerances
 from meshdrape.mould.units import millimetres

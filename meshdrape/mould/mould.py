@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshdrape.mould.check import as_arrays, counted, examine, notes_on, without_unreferenced
+from meshdrape.mould.mesh.check import as_arrays, counted, examine, notes_on, without_unreferenced
 from meshdrape.mould.units import millimetres
 from meshdrape.surface import Surface
 
 if TYPE_CHECKING:
-    from meshdrape.mould.heal import HealReport
+    from meshdrape.mould.mesh.heal import HealReport
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -125,7 +125,7 @@ class Mould:
         MouldError
             The arrays are of the wrong shape or type, an index is out of range, a coordinate is not finite,
             there are no triangles, or the mesh has faults no net can be laid over
-            (:class:`~meshdrape.mould.check.FaultKind`).
+            (:class:`~meshdrape.mould.mesh.check.FaultKind`).
         """
         factor = millimetres(unit)
         checked, corners = as_arrays(vertices, triangles, factor)

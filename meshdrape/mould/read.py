@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from meshdrape.errors import FileError
-from meshdrape.mould.cad import BREP, STEP, file_mould, script_mould
+from meshdrape.mould.cad.reader import BREP, STEP, file_mould, script_mould
 from meshdrape.mould.files import existing_file, file_sha256
-from meshdrape.mould.meshfile import read_mesh_mould
+from meshdrape.mould.formats.reader import read_mesh_mould
 from meshdrape.mould.mould import Mould
 
 SCRIPT = (".py",)
@@ -39,7 +39,7 @@ def read_mould(
     chord_tolerance : float, mm, optional
         Default 0.1.
     angle_tolerance : float, rad, optional
-        Default 0.2 degrees; see :func:`meshdrape.mould.brep.cut_faces`.
+        Default 0.2 degrees; see :func:`meshdrape.mould.cad.brep.cut_faces`.
     heal : bool
         Repair a mesh file; ``Mould.healing`` says what that changed.
     parameters : mapping, optional

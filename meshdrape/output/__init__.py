@@ -3,12 +3,12 @@
 Importing this imports neither VTK nor any other library of drawing.
 """
 
-from meshdrape.output.fibres_ply import write_fibres_ply
 from meshdrape.output.files import atomic_write, check_target
-from meshdrape.output.mould_ply import write_mould_ply
-from meshdrape.output.net_ply import write_ply
-from meshdrape.output.picture import draw_net
-from meshdrape.output.stored_net import StoredNet, read_net
+from meshdrape.output.picture.draw import draw_net
+from meshdrape.output.ply.fibres import write_fibres_ply
+from meshdrape.output.ply.mould import write_mould_ply
+from meshdrape.output.ply.net import write_ply
+from meshdrape.output.ply.stored_net import StoredNet, read_net
 from meshdrape.output.summary import json_text, write_json
 
 __all__ = [

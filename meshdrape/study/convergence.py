@@ -13,8 +13,8 @@ from meshdrape.errors import MouldError, StartError
 from meshdrape.mould.read import read_mould
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.measures import Measures, measure
-from meshdrape.weave.noise import SIGMAS, mesh_noise
+from meshdrape.weave.measures.cells import Measures, measure
+from meshdrape.weave.measures.noise import SIGMAS, mesh_noise
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould
@@ -53,7 +53,8 @@ class Convergence:
         In which power of the tolerances the error falls, where the three agree on one; None where they do not, and
         the bar is their spread.
     noise : float
-        Shear by which the facets of the finest mesh can falsify a cell, rad (:func:`meshdrape.weave.noise.mesh_noise`).
+        Shear by which the facets of the finest mesh can falsify a cell, rad
+        (:func:`meshdrape.weave.measures.noise.mesh_noise`).
     error_bar : float
         By how much the finest maximum may be off for being measured on facets, rad, for this spacing.
     spacing_error : float

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshdrape.weave.balance import balance
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.measures import measure
+from meshdrape.weave.measures.balance import balance
+from meshdrape.weave.measures.cells import measure
 from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshdrape.errors import FabricError, StartError
-from meshdrape.mould.check import FARTHEST
+from meshdrape.mould.mesh.check import FARTHEST
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.lay import lay, trim
-from meshdrape.weave.meeting import end_where_met
+from meshdrape.weave.lay.meeting import end_where_met
+from meshdrape.weave.lay.recross import creases_of, end_where_recrossed
+from meshdrape.weave.lay.sheet import lay, trim
 from meshdrape.weave.net import Net, Request
-from meshdrape.weave.prescribed import courses_on, prescribe
-from meshdrape.weave.recross import creases_of, end_where_recrossed
-from meshdrape.weave.start import numbers, part_under
+from meshdrape.weave.start.prescribed import courses_on, prescribe
+from meshdrape.weave.start.seed import numbers, part_under
 
 if TYPE_CHECKING:
     from meshdrape.mould import Mould

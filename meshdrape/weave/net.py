@@ -15,7 +15,7 @@ from meshdrape.kernels import emit
 from meshdrape.kernels.tables import Lattice, Start
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.prescribed import StartFibres
+from meshdrape.weave.start.prescribed import StartFibres
 from meshdrape.weave.status import NodeStatus
 
 if TYPE_CHECKING:

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from meshdrape import __version__
 from meshdrape.kernels import locate
-from meshdrape.weave.audit import Audit
-from meshdrape.weave.balance import Balance
-from meshdrape.weave.fibre import FAMILY
-from meshdrape.weave.field import MouldField
-from meshdrape.weave.measures import Measures
+from meshdrape.weave.measures.balance import Balance
+from meshdrape.weave.measures.cells import Measures
+from meshdrape.weave.measures.field import MouldField
+from meshdrape.weave.measures.noise import mesh_noise
 from meshdrape.weave.net import Net
-from meshdrape.weave.noise import mesh_noise
+from meshdrape.weave.recheck.edges import Audit
+from meshdrape.weave.start.fibre import FAMILY
 from meshdrape.weave.status import NodeStatus
 
 # Outcomes that leave fabric missing where it should lie.

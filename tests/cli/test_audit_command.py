@@ -13,7 +13,7 @@ from meshfiles import binary_stl, obj
 from moulds import bumpy, holed_plate, icosphere, plate
 
 import meshdrape
-from meshdrape.output.ply_reader import read_ply
+from meshdrape.output.ply.reader import read_ply
 
 
 @pytest.fixture(scope="module")

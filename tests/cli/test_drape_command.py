@@ -19,7 +19,7 @@ from meshdrape import weave
 from meshdrape.cli import drape as drape_command
 from meshdrape.cli.main import main
 from meshdrape.weave import read_off
-from meshdrape.weave.noise import mesh_noise
+from meshdrape.weave.measures.noise import mesh_noise
 
 SPACING, SEED, DIRECTION = 40.0, (50.0, 30.0, 990.0), (1.0, 0.3, 0.0)
 COMPANIONS = ["net.fibres.ply", "net.json", "net.mould.ply", "net.ply", "net.png"]
@@ -138,7 +138,7 @@ def test_whatever_compiles_is_told_of(flat, tmp_path, monkeypatch):
     monkeypatch.setattr(drape_command, "compilation_told", told)
     for name in ("drape", "measure", "read_off", "audit"):
         watched(weave, name)
-    watched(sys.modules["meshdrape.weave.balance"], "balance")
+    watched(sys.modules["meshdrape.weave.measures.balance"], "balance")
     assert main(["drape", str(flat), "-o", str(tmp_path / "net.ply"), "--spacing", "20", "--no-picture"]) == 0
     assert seen == dict.fromkeys(("drape", "measure", "read_off", "audit", "balance"), True)
     assert not inside

@@ -11,7 +11,7 @@ import pytest
 from command import CAD, ROOT, run
 
 import meshdrape
-from meshdrape.mould.shape import read_step
+from meshdrape.mould.cad.shape import read_step
 
 
 def made(capfd, *words):

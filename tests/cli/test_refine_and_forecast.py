@@ -10,7 +10,7 @@ import pytest
 from command import SAMPLES, draped, run
 
 import meshdrape
-from meshdrape.weave.noise import SIGMAS, mesh_noise
+from meshdrape.weave.measures.noise import SIGMAS, mesh_noise
 
 # Sample, seed, direction, extent, how far the forecast may be off the drape's own maximum, share.
 STARTS = {

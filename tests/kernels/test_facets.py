@@ -6,7 +6,7 @@ from moulds import Mesh, bumpy, cap, cube, holed_plate, icosphere, tube
 
 from meshdrape.kernels.components import connected_parts
 from meshdrape.kernels.facets import chords, may_be_nearest, pair_edges, star_radii
-from meshdrape.mould.weld import _close_pairs
+from meshdrape.mould.formats.weld import _close_pairs
 from meshdrape.surface import Surface
 
 

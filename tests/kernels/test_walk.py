@@ -11,7 +11,7 @@ from paths import LEFT_SURFACE, WALKED, Place, in_face, place_at, turn_into, wal
 
 from meshdrape.kernels.walk import off_mould, survey
 from meshdrape.surface import Surface, SurfacePoint
-from meshdrape.weave.collar import extended
+from meshdrape.weave.lay.collar import extended
 
 MESHES = {
     "plate": plate(),

@@ -13,8 +13,8 @@ import sys
 import numpy as np
 import meshdrape
 from moulds import bumpy, cube_corner, wing_spar
-from meshdrape.weave.balance import balance
-from meshdrape.weave.rebuild import rebuild
+from meshdrape.weave.measures.balance import balance
+from meshdrape.weave.recheck.rebuild import rebuild
 
 nets = {}
 cases = {

@@ -16,8 +16,8 @@ from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
 from OCP.gp import gp_Pnt
 
 from meshdrape import Mould
-from meshdrape.mould.brep import brep_mould
-from meshdrape.mould.shape import of_shape
+from meshdrape.mould.cad.brep import brep_mould
+from meshdrape.mould.cad.shape import of_shape
 
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 

@@ -18,8 +18,8 @@ import pytest
 import meshdrape
 from meshdrape.errors import FileError, MouldError, SelectionError
 from meshdrape.mould import apart as module
-from meshdrape.mould import cad
 from meshdrape.mould.apart import DiedError, allow, apart, step
+from meshdrape.mould.cad import reader as cad
 
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 GIB = 2**30
@@ -127,7 +127,7 @@ def test_what_was_there_is_not_copied_to_look_for_garbage_in_it():
 IMPORTS = """
 import sys
 from pathlib import Path
-from meshdrape.mould import cad
+from meshdrape.mould.cad import reader as cad
 
 apart = cad.apart
 

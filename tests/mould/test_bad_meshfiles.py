@@ -17,7 +17,7 @@ from meshfiles import (
 from moulds import Mesh
 
 from meshdrape.errors import FileError, MeshdrapeError, MouldError
-from meshdrape.mould.meshfile import read_mesh_mould
+from meshdrape.mould.formats.reader import read_mesh_mould
 
 STL = binary_stl(SQUARE)
 TEXT = text_stl(SQUARE)

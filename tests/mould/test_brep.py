@@ -12,8 +12,8 @@ from brep_shapes import SAMPLES, SOLIDS, distance_to, solid
 
 from meshdrape import read_mould
 from meshdrape.errors import MouldError, SelectionError
-from meshdrape.mould.brep import brep_mould, cad_faces
-from meshdrape.mould.shape import of_shape
+from meshdrape.mould.cad.brep import brep_mould, cad_faces
+from meshdrape.mould.cad.shape import of_shape
 
 COARSE = {"chord_tolerance": 2.0, "angle_tolerance": math.radians(4)}
 

@@ -7,7 +7,7 @@ import pytest
 from moulds import Mesh, cut_plate, grid, holed_plate, moebius, plate, rotation, tiles
 
 from meshdrape.errors import MouldError
-from meshdrape.mould.check import FaultKind, as_arrays, examine, notes_on
+from meshdrape.mould.mesh.check import FaultKind, as_arrays, examine, notes_on
 from meshdrape.mould.mould import Mould
 from meshdrape.surface import Surface
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from meshdrape.mould.facets import Facets
-from meshdrape.mould.patch import Nodes
+from meshdrape.mould.cad.facets import Facets
+from meshdrape.mould.cad.patch import Nodes
 
 
 def flat_nodes(uv: np.ndarray, metric: tuple[float, float, float] = (1, 0, 1)) -> Nodes:

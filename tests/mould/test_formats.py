@@ -21,7 +21,7 @@ from meshfiles import (
 )
 from moulds import Mesh, bumpy, holed_plate, plate
 
-from meshdrape.mould.meshfile import MESH_SUFFIXES, read_mesh
+from meshdrape.mould.formats.reader import MESH_SUFFIXES, read_mesh
 
 # neither a double of few digits nor a float32
 ODD = np.array([[0.1, 1 / 3, -2e-7], [1e5 / 7, 0.3, np.pi], [1.1, 2.0**-40, 5]])

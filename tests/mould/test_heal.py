@@ -7,8 +7,8 @@ import pytest
 from moulds import Mesh, bumpy, cut_plate, grid, holed_plate, icosphere, moebius, plate, tiles
 
 from meshdrape.errors import MissingLibraryError, MouldError, missing_library
-from meshdrape.mould.check import FaultKind, examine
-from meshdrape.mould.heal import HealReport, heal
+from meshdrape.mould.mesh.check import FaultKind, examine
+from meshdrape.mould.mesh.heal import HealReport, heal
 from meshdrape.mould.mould import Mould
 from meshdrape.surface import Surface
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError, MouldError, SelectionError
-from meshdrape.mould import library
-from meshdrape.mould.library import build_script, build_shape, script, scripts
+from meshdrape.mould.cad import library
+from meshdrape.mould.cad.library import build_script, build_shape, script, scripts
 
 CAD = Path(__file__).resolve().parents[2] / "cad"
 
@@ -128,7 +128,7 @@ def test_block_is_a_closed_solid():
 
 def test_scripts_are_found_where_a_wheel_puts_them(tmp_path, monkeypatch):
     """Away from the sources: beside the package (pip install --target), or where its record says."""
-    package = tmp_path / "site" / "meshdrape" / "mould"
+    package = tmp_path / "site" / "meshdrape" / "mould" / "cad"
     package.mkdir(parents=True)
     monkeypatch.setattr(library, "__file__", str(package / "library.py"))
     monkeypatch.setattr(library.metadata, "distributions", lambda name: [])

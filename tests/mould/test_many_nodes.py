@@ -10,8 +10,8 @@ import pytest
 from brep_shapes import all_faces
 
 from meshdrape.errors import MouldError
-from meshdrape.mould.outline import MANY, Outline
-from meshdrape.mould.patch import Nodes
+from meshdrape.mould.cad.outline import MANY, Outline
+from meshdrape.mould.cad.patch import Nodes
 
 
 def tube(radius: float, height: float) -> cq.Shape:

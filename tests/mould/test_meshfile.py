@@ -10,7 +10,7 @@ from moulds import holed_plate
 
 from meshdrape.errors import FileError, MouldError
 from meshdrape.mould.files import file_sha256
-from meshdrape.mould.meshfile import MESH_SUFFIXES, read_mesh, read_mesh_mould
+from meshdrape.mould.formats.reader import MESH_SUFFIXES, read_mesh, read_mesh_mould
 
 
 @pytest.mark.parametrize(("unit", "factor"), [(None, 1.0), ("mm", 1.0), ("m", 1000.0), ("inch", 25.4)])

@@ -131,7 +131,7 @@ def test_errors_share_one_class():
 
 def test_heavy_libraries_come_late():
     code = (
-        "import sys, meshdrape.mould, meshdrape.mould.meshfile, meshdrape.mould.heal\n"
+        "import sys, meshdrape.mould, meshdrape.mould.formats.reader, meshdrape.mould.mesh.heal\n"
         "print(*sorted({'cadquery', 'OCP', 'pymeshlab', 'trimesh', 'scipy', 'mapbox_earcut'} & set(sys.modules)))"
     )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

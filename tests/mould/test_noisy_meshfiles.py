@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from meshfiles import OBJ_SQUARE, SQUARE, binary_ply, binary_stl, off, ply_header, polygons_ply, stored, text_stl
 
 from meshdrape.errors import FileError, MeshdrapeError, MouldError
-from meshdrape.mould.meshfile import MESH_SUFFIXES, read_mesh_mould
+from meshdrape.mould.formats.reader import MESH_SUFFIXES, read_mesh_mould
 
 SEED = {
     ".stl": [binary_stl(SQUARE), text_stl(SQUARE)],

@@ -5,7 +5,7 @@ import pytest
 from meshfiles import OFF_SQUARE, stored
 from moulds import rotation
 
-from meshdrape.mould.meshfile import read_mesh
+from meshdrape.mould.formats.reader import read_mesh
 
 
 @pytest.mark.parametrize("shift", range(5))

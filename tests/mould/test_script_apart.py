@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError
-from meshdrape.mould.library import build_script
-from meshdrape.mould.script_apart import ScriptApart
+from meshdrape.mould.cad.library import build_script
+from meshdrape.mould.cad.script_apart import ScriptApart
 
 ROOT = Path(__file__).resolve().parents[2]
 ASKED = ("cone", {}, 0.5, 0.05)
@@ -79,7 +79,7 @@ def test_leaving_the_block_ends_the_process(apart):
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_no_process_outlives_the_one_that_asked(how):
     code = (
-        "import time; from meshdrape.mould.script_apart import ScriptApart\n"
+        "import time; from meshdrape.mould.cad.script_apart import ScriptApart\n"
         "with ScriptApart() as script:\n"
         f"    script.ask(*{ENDLESS!r})\n"
         "    print(script._process.pid, flush=True); time.sleep(60)"

@@ -10,9 +10,9 @@ import pytest
 from brep_shapes import SAMPLES, SOLIDS, VOLUME, all_faces, distance_to, normals_at, signed_volume, solid
 
 import meshdrape
-from meshdrape.mould.brep import ANGLE_TOLERANCE, CHORD_TOLERANCE
-from meshdrape.mould.shape import read_step
-from meshdrape.weave.noise import mesh_noise
+from meshdrape.mould.cad.brep import ANGLE_TOLERANCE, CHORD_TOLERANCE
+from meshdrape.mould.cad.shape import read_step
+from meshdrape.weave.measures.noise import mesh_noise
 
 OPEN = ("cone", "cube_corner", "cylinder", "hemisphere", "hypar", "krogh_double_curved", "wing_spar")
 COARSE = {"chord_tolerance": 1.0, "angle_tolerance": math.radians(2)}

@@ -5,7 +5,7 @@ import pytest
 from meshfiles import SQUARE, binary_stl, stored, text_stl
 from moulds import Mesh, plate
 
-from meshdrape.mould.meshfile import read_mesh, read_mesh_mould
+from meshdrape.mould.formats.reader import read_mesh, read_mesh_mould
 
 
 def test_stl_corners_are_welded_into_the_mesh_they_came_from(tmp_path):

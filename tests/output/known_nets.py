@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from meshdrape.surface import Surface
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.prescribed import StartFibres
+from meshdrape.weave.start.prescribed import StartFibres
 from meshdrape.weave.status import NodeStatus
 
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError
-from meshdrape.output.fold_charts import pictures
-from meshdrape.output.fold_page import fold_page, write_fold_page
-from meshdrape.output.fold_text import fold_text
+from meshdrape.output.fold.charts import pictures
+from meshdrape.output.fold.page import fold_page, write_fold_page
+from meshdrape.output.fold.text import fold_text
 from meshdrape.study.fold.answer import (
     Choice,
     Envelope,

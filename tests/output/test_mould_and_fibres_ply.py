@@ -6,7 +6,7 @@ import pytest
 from meshdrape.output import write_fibres_ply, write_mould_ply
 from meshdrape.output.colour import NO_CLOTH, WARP, WEFT, shear_colour
 from meshdrape.output.fibres import round_step
-from meshdrape.output.ply_reader import read_ply
+from meshdrape.output.ply.reader import read_ply
 
 
 def test_the_mould_carries_its_field(field, tmp_path, meshlab):

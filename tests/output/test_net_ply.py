@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError, MeshdrapeError, NetError
-from meshdrape.output import net_elements, read_net, write_ply
+from meshdrape.output import read_net, write_ply
 from meshdrape.output.colour import shear_colour
-from meshdrape.output.ply_reader import read_ply
+from meshdrape.output.ply import net_elements
+from meshdrape.output.ply.reader import read_ply
 from meshdrape.weave.status import NodeStatus
 
 

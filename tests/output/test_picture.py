@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError
-from meshdrape.output import draw_net, picture
-from meshdrape.output.camera import View, fitted, view_axes
+from meshdrape.output import draw_net
 from meshdrape.output.colour import shear_colour
-from meshdrape.output.scene import drawn_cells, drawn_fibres
-from meshdrape.output.stage import Stage
+from meshdrape.output.picture import draw as picture
+from meshdrape.output.picture.camera import View, fitted, view_axes
+from meshdrape.output.picture.scene import drawn_cells, drawn_fibres
+from meshdrape.output.picture.stage import Stage
 from meshdrape.weave.status import NodeStatus
 
 HELPERS = [str(folder) for folder in Path(__file__).parents[:2]]  # where a process of its own finds the known nets
@@ -102,7 +103,8 @@ import sys
 sys.path[:0] = sys.argv[2:]
 from known_nets import flat_net, measured
 from meshdrape.errors import MissingLibraryError
-from meshdrape.output import draw_net, picture
+from meshdrape.output import draw_net
+from meshdrape.output.picture import draw as picture
 net = flat_net()
 try:
     draw_net(net, measured(net), sys.argv[1])

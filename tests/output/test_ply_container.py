@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from meshdrape.errors import FileError
-from meshdrape.output.comments import from_comments, to_comments
-from meshdrape.output.ply import Element, ply_writer
-from meshdrape.output.ply_reader import read_ply
+from meshdrape.output.ply.comments import from_comments, to_comments
+from meshdrape.output.ply.reader import read_ply
+from meshdrape.output.ply.writer import Element, ply_writer
 
 POINT = np.dtype([("x", "f8"), ("flag", "u1"), ("weights", "f4", (3,)), ("n", "i4")])
 FACE = np.dtype([("vertex_indices", "i4", (4,)), ("quality", "f4")])

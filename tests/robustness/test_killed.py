@@ -13,7 +13,7 @@ import pytest
 from moulds import bumpy
 
 import meshdrape
-from meshdrape.output.ply_reader import read_ply
+from meshdrape.output.ply.reader import read_ply
 
 ROOT = Path(__file__).resolve().parents[2]
 COMPLETE = {"net.ply", "net.mould.ply", "net.fibres.ply", "net.json"}

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from wild import KINDS, WildDrape
 
 import meshdrape
-from meshdrape.weave.balance import balance
-from meshdrape.weave.field import read_off
+from meshdrape.weave.measures.balance import balance
+from meshdrape.weave.measures.field import read_off
 from meshdrape.weave.summary import summarise
 
 SECONDS = 30.0

@@ -12,7 +12,7 @@ import meshdrape
 from meshdrape.errors import MouldError, StartError
 from meshdrape.study import convergence
 from meshdrape.study.convergence import extrapolated
-from meshdrape.weave.noise import SIGMAS
+from meshdrape.weave.measures.noise import SIGMAS
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 import meshdrape
-from meshdrape.mould.library import build_script
+from meshdrape.mould.cad.library import build_script
 
 SPACING = 50.0
 RADII = (160.0, 80.0, 40.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import meshdrape
-from meshdrape.mould.library import build_script
+from meshdrape.mould.cad.library import build_script
 
 DIAGONAL = (1.0, 1.0, 0.0)
 SHORT_WING = {"span": 3000, "chord": 1500, "spar_height": 500, "deviation": "none"}

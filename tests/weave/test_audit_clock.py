@@ -8,7 +8,7 @@ from moulds import plate
 import meshdrape
 
 # the package has a function of this name
-audit_module = importlib.import_module("meshdrape.weave.audit")
+audit_module = importlib.import_module("meshdrape.weave.recheck.edges")
 LOADING, EDGE = 40.0, 1e-3  # s, of the first question ever, and of every one
 
 

@@ -5,7 +5,7 @@ import pytest
 from moulds import cone, cube_corner, cylinder, hypar, icosphere, plate
 
 import meshdrape
-from meshdrape.weave.balance import balance
+from meshdrape.weave.measures.balance import balance
 
 
 def of(net):

@@ -11,8 +11,8 @@ from references import Crease, CreaseNet
 
 import meshdrape
 from meshdrape.kernels.edges import WARP, WEFT, edge_ends
-from meshdrape.weave.balance import OPEN_SHARE, balance
-from meshdrape.weave.curvature import enclosed_curvature
+from meshdrape.weave.measures.balance import OPEN_SHARE, balance
+from meshdrape.weave.measures.curvature import enclosed_curvature
 
 LONG = (1.0, 0.0, 0.0)
 # Fibres through vertices, along mesh edges and along a crease, from seeds on a vertex, an edge and a crease.

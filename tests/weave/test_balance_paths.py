@@ -6,10 +6,10 @@ from moulds import Mesh, bumpy, cube_corner, grid, step_corner
 from test_balance_cells import interior_angles
 
 import meshdrape
-from meshdrape.weave.balance import balance
-from meshdrape.weave.chords import chords, passed
-from meshdrape.weave.rebuild import rebuild
-from meshdrape.weave.turning import turning
+from meshdrape.weave.measures.balance import balance
+from meshdrape.weave.measures.chords import chords, passed
+from meshdrape.weave.measures.turning import turning
+from meshdrape.weave.recheck.rebuild import rebuild
 
 
 def pyramid(sides, depth, radius=1000.0):

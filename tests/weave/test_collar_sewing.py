@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from meshdrape.surface import Surface
-from meshdrape.weave.collar import _sewn, extended
+from meshdrape.weave.lay.collar import _sewn, extended
 
 
 def one_by_one(vertices, tail, place, spreads, first):

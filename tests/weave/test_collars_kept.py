@@ -5,7 +5,7 @@ import pytest
 from moulds import cap
 
 import meshdrape
-from meshdrape.weave import lay
+from meshdrape.weave.lay import sheet as lay
 
 SEED, DIRECTION = (0.0, 0.0, 1000.0), (1.0, 0.3, 0.0)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshdrape.weave.excess import Sides, corner_excess, laid_flat
+from meshdrape.weave.measures.excess import Sides, corner_excess, laid_flat
 
 EQUAL = Sides(1.0, 1.0, 1.0, 1.0)
 

@@ -12,7 +12,7 @@ import meshdrape
 from meshdrape.output import json_text
 from meshdrape.output.drape_text import drape_text
 from meshdrape.weave import read_off
-from meshdrape.weave.balance import balance
+from meshdrape.weave.measures.balance import balance
 from meshdrape.weave.summary import shortest_arc, summarise
 
 RAD = np.radians

@@ -16,7 +16,7 @@ from references import Crease, CreaseNet, hypar_net, sphere_cell_shear, sphere_n
 import meshdrape
 from meshdrape.surface import Surface
 from meshdrape.theory.reference_nets import constant_curvature_angle
-from meshdrape.weave.noise import SIGMAS, mesh_noise
+from meshdrape.weave.measures.noise import SIGMAS, mesh_noise
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 RADIUS, SPACING = 1000.0, 50.0

@@ -9,7 +9,7 @@ from moulds import Mesh, bumpy, cube_corner, cylinder, grid, hypar, plate
 from rates import orders
 
 import meshdrape
-from meshdrape.weave.balance import balance
+from meshdrape.weave.measures.balance import balance
 
 PLATE = plate(400, 300, (19, 15))
 
@@ -168,7 +168,7 @@ def test_nodes_lie_one_spacing_apart_along_the_curve():
     curve = wavy(HILLS)
     net = drape(HILLS, 8.0, warp_path=curve)
     surface = HILLS.mould().surface
-    from meshdrape.weave.path import draw
+    from meshdrape.weave.start.path import draw
 
     path = draw(surface, curve, 8.0, "curve")
     middle = path.length / 2

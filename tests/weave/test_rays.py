@@ -6,7 +6,7 @@ from moulds import cube, icosphere, step_corner
 
 from meshdrape.kernels.generator import turn_about_vertex
 from meshdrape.surface import Surface, SurfacePoint
-from meshdrape.weave.rays import Rays
+from meshdrape.weave.start.rays import Rays
 
 PLACES = {
     "in a face": np.array([0.2, 0.3, 0.5]),

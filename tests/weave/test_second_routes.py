@@ -63,7 +63,7 @@ def test_without_suspicion_there_would_be_some(name, monkeypatch):
         nothing = np.zeros((n, 6), dtype=np.float32)
         return Detours(np.zeros((n, 3)), np.zeros(n, dtype=bool), nothing, np.tile([0.0, 0.0, 1.0], (n, 1)))
 
-    monkeypatch.setattr("meshdrape.weave.quadrants.detours", trustful)
+    monkeypatch.setattr("meshdrape.weave.lay.quadrants.detours", trustful)
     net = meshdrape.drape(mould, meshdrape.Fabric(spacing), seed=seed, direction=(1, 0.3, 0.1))
     assert meshdrape.audit(net, edges=5000).n_second_routes > 0
 

@@ -10,8 +10,8 @@ from meshdrape import NodeStatus
 from meshdrape.cli.main import main
 from meshdrape.surface import Surface
 from meshdrape.weave import read_off
-from meshdrape.weave.collar import extended
-from meshdrape.weave.notches import without_notches
+from meshdrape.weave.lay.collar import extended
+from meshdrape.weave.lay.notches import without_notches
 
 LOST = [status for status in NodeStatus if status > NodeStatus.OUTSIDE]
 

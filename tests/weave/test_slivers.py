@@ -5,7 +5,7 @@ import pytest
 
 import meshdrape
 from meshdrape.surface import SurfacePoint
-from meshdrape.weave import settle
+from meshdrape.weave.lay import settle
 
 
 def slivers(seed, stretch, points=250, size=60.0, noise=0.2):
@@ -39,7 +39,7 @@ def test_most_nodes_that_are_doubted_are_judged_without_libigl(monkeypatch, seed
         measured.append(surface_distance(*request, **options))
         return measured[-1]
 
-    monkeypatch.setattr("meshdrape.weave.judge.shortest", counted_shortest)
+    monkeypatch.setattr("meshdrape.weave.lay.judge.shortest", counted_shortest)
     monkeypatch.setattr(settle, "surface_distance", counted_distance)
     mould = slivers(seed, stretch)
     seed_point = mould.surface.closest_point((29, 31, 0))[0].position(mould.surface)

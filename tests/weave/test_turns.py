@@ -8,8 +8,8 @@ from lattice import nodes_at, offsets, placed
 from moulds import Mesh, cube_corner, cylinder, grid, hypar, plate, wing_spar
 
 import meshdrape
-from meshdrape.weave.balance import balance
-from meshdrape.weave.crease import crease_edges
+from meshdrape.weave.measures.balance import balance
+from meshdrape.weave.start.crease import crease_edges
 
 
 def roof(angle, n=6):

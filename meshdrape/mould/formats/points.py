@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.errors import FileError
-from meshdrape.mould.check import FARTHEST
 from meshdrape.mould.files import existing_file
+from meshdrape.mould.mesh.check import FARTHEST
 
 
 def read_points(path: str | os.PathLike[str]) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from meshdrape.output.chart import packed
 from meshdrape.output.files import atomic_write, check_target
-from meshdrape.output.picture import draw_net
+from meshdrape.output.picture.draw import draw_net
 from meshdrape.output.validation.curve_figures import draw_convergence, draw_criteria
 from meshdrape.output.validation.fold_figures import (
     draw_flat_spar,

@@ -17,7 +17,7 @@ from meshdrape.theory import Fold, FoldNet, Profile, discrete_net
 from meshdrape.theory.sheet import Gamma
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.measures import Measures, measure
+from meshdrape.weave.measures.cells import Measures, measure
 from meshdrape.weave.net import Net
 
 FloatArray = NDArray[np.float64]

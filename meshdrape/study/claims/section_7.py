@@ -35,7 +35,7 @@ from meshdrape.theory import (
 )
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.measures import measure
+from meshdrape.weave.measures.cells import measure
 
 FloatArray = NDArray[np.float64]
 

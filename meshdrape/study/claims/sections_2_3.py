@@ -21,7 +21,7 @@ from meshdrape.theory import (
     sine_deviation,
     within_reach,
 )
-from meshdrape.weave.audit import audit
+from meshdrape.weave.recheck.edges import audit
 
 ROUND_OFF_DEG = 1e-6  # of angles carried along a net over metres of facets
 

@@ -16,7 +16,7 @@ from meshdrape.study.fold.mould import FoldMould
 from meshdrape.theory import NEITHER, RIBBON_FED, WING_FED
 from meshdrape.weave.drape import drape
 from meshdrape.weave.fabric import Fabric
-from meshdrape.weave.measures import shear_of_cells
+from meshdrape.weave.measures.cells import shear_of_cells
 from meshdrape.weave.net import Net
 from meshdrape.weave.status import NodeStatus
 

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshdrape.errors import DesignError, FileError
-from meshdrape.mould.library import build_script
+from meshdrape.mould.cad.library import build_script
+from meshdrape.mould.cad.script_apart import ScriptApart
 from meshdrape.mould.mould import Mould
-from meshdrape.mould.script_apart import ScriptApart
 from meshdrape.study.fold.design import Design, Shape
 from meshdrape.study.fold.frame import Cloth, Frame
 

@@ -1,0 +1,1 @@
+"""CAD files and scripts in, triangles that remember their faces out."""

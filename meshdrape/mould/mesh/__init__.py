@@ -1,0 +1,1 @@
+"""Whether a triangle mesh can be draped, and on request its repair."""

@@ -1,0 +1,1 @@
+"""The answer of `meshdrape fold`: text, charts, page."""

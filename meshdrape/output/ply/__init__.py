@@ -1,0 +1,1 @@
+"""PLY files for MeshLab, and a net read back from its own."""

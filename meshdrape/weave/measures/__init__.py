@@ -1,0 +1,1 @@
+"""What is measured on a net, cell by cell, and what its own mesh falsifies."""

@@ -1,0 +1,1 @@
+"""A finished net checked again by other means than those that made it."""

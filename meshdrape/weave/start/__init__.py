@@ -1,0 +1,1 @@
+"""The seed point, and the two start fibres through it, straight, turned or drawn."""
