@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from meshdrape.errors import FabricError
 
+# No cloth locks below this, rad: a number given in degrees that is smaller was meant in radians.
+LEAST_LOCKING = math.radians(1.0)
+
 
 @dataclass(frozen=True)
 class Fabric:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from meshdrape import __version__
 from meshdrape.kernels import locate
+from meshdrape.weave.fabric import LEAST_LOCKING
 from meshdrape.weave.measures.balance import Balance
 from meshdrape.weave.measures.cells import Measures
 from meshdrape.weave.measures.field import MouldField
@@ -240,6 +241,10 @@ def _warnings(measures: Measures, summary: dict[str, Any], noise: float) -> list
     if net.seed_distance > 1e-6 * fabric.warp_spacing:
         warnings.append(f"the seed was {net.seed_distance:.4g} mm off the mould and was projected on it")
     lock = math.degrees(fabric.locking_angle)
+    if fabric.locking_angle < LEAST_LOCKING:
+        warnings.append(
+            f"no cloth locks at {lock:g} degrees; were {math.degrees(lock):.3g} meant, {lock:g} in radians?"
+        )
     if measures.max_shear > fabric.locking_angle:
         warnings.append(
             f"the cloth locks: {summary['max_shear_deg']:.2f} degrees of shear where {lock:g} are possible, "

@@ -11,13 +11,12 @@ from meshdrape.study.fold.answer import FoldWarning, Verdict
 from meshdrape.study.fold.design import Design
 from meshdrape.study.fold.lay import FoldDrape
 from meshdrape.theory import grazing_rows, returning_rows, separation_of_scales
+from meshdrape.weave.fabric import LEAST_LOCKING
 
 # Rows within this of the edge's direction graze it, rad.
 GRAZING = math.radians(1.0)
 # psi may change by this from ribbon to ribbon, rad, before a criterion that takes it for constant misleads.
 COARSE = math.radians(0.5)
-# No cloth locks below this, rad: the number was meant in radians.
-IN_RADIANS = math.radians(1.0)
 
 
 def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWarning, ...]:
@@ -64,7 +63,7 @@ def notices(design: Design, drape: FoldDrape, verdict: Verdict) -> tuple[FoldWar
         found.append(
             FoldWarning("verdict", "too close to call: drape and characteristic construction decide differently")
         )
-    if design.locking_angle < IN_RADIANS:
+    if design.locking_angle < LEAST_LOCKING:
         said = math.degrees(design.locking_angle)
         found.append(
             FoldWarning(
