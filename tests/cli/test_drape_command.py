@@ -368,6 +368,8 @@ def test_locking_angle(capfd, dome, tmp_path):
     assert not any("locks" in warning for warning in loose["warnings"])
     tight = draped(capfd, dome, tmp_path / "net.ply", "--spacing", SPACING, "--locking-angle", 0.01)
     assert tight["over_locking_percent"] > 90
+    assert any("no cloth locks at 0.01 degrees; were 0.573 meant" in warning for warning in tight["warnings"])
+    assert not any("no cloth locks" in warning for warning in loose["warnings"])
 
 
 def test_extent_bounds_the_cloth(capfd, flat, tmp_path):
