@@ -62,7 +62,7 @@ def test_saddle_along_its_lines_is_the_hyperbolic_paraboloid():
     # weft = normal x warp points to (-1, 1): back along weft is the way to +x
     assert np.linalg.norm(net.node_position[i + 20, j - 20] - [1078.4965, 0, 581.5774]) < 1.0
     straight = net.node_position[i + 20, j]
-    assert np.linalg.norm(straight - [1000 / np.sqrt(2), 1000 / np.sqrt(2), 0]) < 0.3
+    assert np.linalg.norm(straight - [1000 / np.sqrt(2), 1000 / np.sqrt(2), 0]) < 0.5
 
 
 def test_dome_of_the_hat_shears_as_the_sphere():

@@ -7,8 +7,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.kernels.components import connected_parts
-
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -46,6 +44,8 @@ def welded_along_borders(vertices: Floats, triangles: Ints) -> tuple[Floats, Int
     apart = ~np.isin(a * len(vertices) + b, unique)
     if not apart.any():
         return vertices, triangles
+    from meshdrape.kernels.components import connected_parts
+
     label = connected_parts(a[apart], b[apart], len(vertices))
     _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
     return _merged(vertices, triangles, first[inverse])

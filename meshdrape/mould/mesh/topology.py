@@ -7,8 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshdrape.kernels.components import connected_parts
-
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -83,7 +81,7 @@ def fans(triangles: Ints, joints: Joints) -> Ints:
     following = np.arange(triangles.size).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     # across an edge the corners at either of its ends belong to one fan
     start, end = np.where(alike, other, following[other]), np.where(alike, following[other], other)
-    return connected_parts(np.concatenate([one, following[one]]), np.concatenate([start, end]), triangles.size)
+    return _parts(np.concatenate([one, following[one]]), np.concatenate([start, end]), triangles.size)
 
 
 def misfacing(triangles: Ints, joints: Joints) -> tuple[Bools, Bools, Ints]:
@@ -106,7 +104,7 @@ def misfacing(triangles: Ints, joints: Joints) -> tuple[Bools, Bools, Ints]:
     face, neighbour = joints.one // 3, joints.other // 3
     across = np.where(joints.alike, m + neighbour, neighbour)
     back = np.where(joints.alike, neighbour, m + neighbour)
-    part = connected_parts(np.concatenate([face, m + face]), np.concatenate([across, back]), 2 * m)
+    part = _parts(np.concatenate([face, m + face]), np.concatenate([across, back]), 2 * m)
     half, turned = part[:m], part[m:]
     one_sided = half == turned
     size = np.bincount(half, minlength=2 * m)
@@ -117,3 +115,10 @@ def misfacing(triangles: Ints, joints: Joints) -> tuple[Bools, Bools, Ints]:
 
 def _dot(a: Floats, b: Floats) -> Floats:
     return np.asarray(np.einsum("ij,ij->i", a, b))
+
+
+def _parts(a: Ints, b: Ints, n: int) -> Ints:
+    """As :func:`meshdrape.kernels.components.connected_parts`, which is imported when it is needed."""
+    from meshdrape.kernels.components import connected_parts
+
+    return connected_parts(a, b, n)

@@ -171,10 +171,11 @@ class Creases:
 def _depth(creases: Creases, surface: Surface, lattice: Lattice, i: IntArray, j: IntArray) -> float:
     """How far the nodes (i, j) go from the creases of their mould, mm."""
     ends, _ = creases.edges
-    face = lattice.face[i, j]
-    frame = surface.unfolding.frame[face]
+    # where cloth is missing on the way back there is no face to ask
+    placed = lattice.status[i, j] == NodeStatus.PLACED
+    i, j = i[placed], j[placed]
+    frame = surface.unfolding.frame[lattice.face[i, j]]
     points = frame[:, :3] + lattice.xy[i, j, :1] * frame[:, 3:6] + lattice.xy[i, j, 1:] * frame[:, 6:9]
-    points = points[lattice.status[i, j] == NodeStatus.PLACED]
     tail = creases.surface.vertices[ends[:, 0]]
     along = creases.surface.vertices[ends[:, 1]] - tail
     farthest = 0.0

@@ -14,10 +14,15 @@ IntArray = NDArray[np.int64]
 SLIT = 2.0
 # Two edges face each other if their directions are opposite to within 60 degrees.
 FACING_COSINE = -0.5
+# And if the surface beside them turns by no more than 20 degrees from one to the other: the mouth of a channel, or of a
+# sheet that is rolled up, is no slit.
+LEVEL_COSINE = float(np.cos(np.radians(20.0)))
 # They lie side by side over more than this share of one of them.
 OVERLAP = 1e-6
 # What lies farther off an edge's plane than across from it does not face it.
 STEEPEST = 1.0
+# So few points are compared with one another in less time than it takes to load a tree.
+FEW = 500
 
 
 def facing_edges(
@@ -38,14 +43,10 @@ def facing_edges(
     width : float
         Two edges that lie side by side and are this far apart at one end face each other no more, mm.
     """
-    from scipy.spatial import cKDTree
-
     head = tail[after]
     length = np.linalg.norm(head - tail, axis=1)
     # every end of an edge that may lie across from another edge is found about its middle
-    found = cKDTree(tail).query_ball_point(0.5 * (tail + head), 0.5 * length + width)
-    edge = np.repeat(np.arange(len(tail)), [len(near) for near in found])
-    vertex = np.fromiter(chain.from_iterable(found), dtype=np.int64, count=len(edge))
+    edge, vertex = _within(tail, 0.5 * (tail + head), 0.5 * length + width)
     along = (head - tail) / length[:, None]
     outward = np.cross(along, normal)
     off = tail[vertex] - tail[edge]
@@ -64,6 +65,7 @@ def facing_edges(
     a, b = np.concatenate([edge, edge]), np.concatenate([vertex, before[vertex]])
     gap = np.concatenate([height, height])
     opposite = np.einsum("ij,ij->i", along[a], along[b]) < FACING_COSINE
+    opposite &= np.einsum("ij,ij->i", normal[a], normal[b]) > LEVEL_COSINE
     a, b, gap = a[opposite], b[opposite], gap[opposite]
     pairs, number = np.unique(np.minimum(a, b) * len(tail) + np.maximum(a, b), return_inverse=True)
     nearest = np.full(len(pairs), np.inf)
@@ -74,3 +76,16 @@ def facing_edges(
     kept = np.flatnonzero((nearest <= slit) & (overlap > OVERLAP * np.minimum(length[i], length[j])))
     kept = kept[np.argsort(nearest[kept], kind="stable")]
     return list(zip(i[kept].tolist(), j[kept].tolist(), strict=True))
+
+
+def _within(points: FloatArray, centre: FloatArray, radius: FloatArray) -> tuple[IntArray, IntArray]:
+    """Balls (n,) and the points that lie in each, as pairs."""
+    if len(points) <= FEW:
+        off = points[None] - centre[:, None]
+        ball, point = np.nonzero(np.einsum("ijk,ijk->ij", off, off) <= radius[:, None] ** 2)
+        return ball, point
+    from scipy.spatial import cKDTree
+
+    found = cKDTree(points).query_ball_point(centre, radius)
+    ball = np.repeat(np.arange(len(centre)), [len(near) for near in found])
+    return ball, np.fromiter(chain.from_iterable(found), dtype=np.int64, count=len(ball))
