@@ -22,7 +22,7 @@ OVERLAP = 1e-6
 # What lies farther off an edge's plane than across from it does not face it.
 STEEPEST = 1.0
 # So few points are compared with one another in less time than it takes to load a tree.
-FEW = 500
+FEW = 2000
 
 
 def facing_edges(
@@ -81,8 +81,10 @@ def facing_edges(
 def _within(points: FloatArray, centre: FloatArray, radius: FloatArray) -> tuple[IntArray, IntArray]:
     """Balls (n,) and the points that lie in each, as pairs."""
     if len(points) <= FEW:
-        off = points[None] - centre[:, None]
-        ball, point = np.nonzero(np.einsum("ijk,ijk->ij", off, off) <= radius[:, None] ** 2)
+        middle = points.mean(axis=0)
+        c, p = centre - middle, points - middle
+        room = radius**2 - np.einsum("ij,ij->i", c, c)
+        ball, point = np.nonzero(np.einsum("ij,ij->i", p, p) - 2 * c @ p.T <= room[:, None])
         return ball, point
     from scipy.spatial import cKDTree
 
